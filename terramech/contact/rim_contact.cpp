@@ -57,10 +57,6 @@ double elastoPlastic_Pa(const Soil& soil, double normal_Pa, double displacement_
   return std::copysign(shearStrength_Pa(soil, normal_Pa) * mobilised, displacement_m);
 }
 
-}  // namespace talus::terramech
-
-namespace talus::terramech {
-
 Hegedus hegedus(const PushedSoil& soil) {
   const double phi = std::atan(soil.tan_friction), x = 0.25 * std::numbers::pi - 0.5 * phi;
   const double cot_x = 1.0 / std::tan(x);
@@ -80,10 +76,6 @@ double faceResistance_N(const Hegedus& soil, const WheelFace& face) {
                               : s - s * s * s / 3.0 - theta * c;
   return r * r * (soil.per_depth_Pa * area + 2.0 * r * soil.per_depth_squared_N_m3 * square);
 }
-
-}  // namespace talus::terramech
-
-namespace talus::terramech {
 
 namespace {
 

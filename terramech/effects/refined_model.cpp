@@ -11,61 +11,28 @@
 namespace talus::terramech {
 
 const char* name(Channel channel) {
-  switch (channel) {
-    case Channel::DrawbarPull:
-      return "drawbar_pull_over_load";
-    case Channel::Sinkage:
-      return "sinkage_over_radius";
-    case Channel::Torque:
-      return "torque_over_load_radius";
-    case Channel::SideForce:
-      return "side_force_over_load";
-  }
-  return "";
+  constexpr const char* kNames[] = {"drawbar_pull_over_load", "sinkage_over_radius",
+                                    "torque_over_load_radius", "side_force_over_load"};
+  return kNames[static_cast<std::size_t>(channel)];
 }
 
 double Reading::denominator(Channel channel) const {
-  switch (channel) {
-    case Channel::Sinkage:
-      return radius_m;
-    case Channel::Torque:
-      return load_N * radius_m;
-    case Channel::DrawbarPull:
-    case Channel::SideForce:
-      break;
-  }
-  return load_N;
+  return channel == Channel::Sinkage ? radius_m : channel == Channel::Torque ? load_N * radius_m : load_N;
+}
+
+namespace {
+
+constexpr double Reading::*kReadings[] = {&Reading::drawbar_pull_N, &Reading::sinkage_m, &Reading::torque_Nm,
+                                          &Reading::side_force_N};
+
+}  // namespace
+
+double& Reading::operator[](Channel channel) {
+  return this->*kReadings[static_cast<std::size_t>(channel)];
 }
 
 double Reading::scaled(Channel channel) const {
-  switch (channel) {
-    case Channel::DrawbarPull:
-      return drawbar_pull_N / load_N;
-    case Channel::Sinkage:
-      return sinkage_m / radius_m;
-    case Channel::Torque:
-      return torque_Nm / (load_N * radius_m);
-    case Channel::SideForce:
-      return side_force_N / load_N;
-  }
-  return 0.0;
-}
-
-void Reading::addScaled(Channel channel, double value) {
-  switch (channel) {
-    case Channel::DrawbarPull:
-      drawbar_pull_N += value * load_N;
-      break;
-    case Channel::Sinkage:
-      sinkage_m += value * radius_m;
-      break;
-    case Channel::Torque:
-      torque_Nm += value * load_N * radius_m;
-      break;
-    case Channel::SideForce:
-      side_force_N += value * load_N;
-      break;
-  }
+  return this->*kReadings[static_cast<std::size_t>(channel)] / denominator(channel);
 }
 
 namespace {
@@ -115,23 +82,24 @@ Wheel wheelOf(const WheelContact& c) {
   return {.radius_m = c.radius_m, .width_m = c.width_m};
 }
 
-ShearDisplacement straight(const WheelContact& c, double entry) {
-  return ShearDisplacement{{c.shear_radius_m, c.slip, entry}};
-}
-
-SideSlipDisplacement sideways(const WheelContact& c, double entry) {
-  return SideSlipDisplacement{{.shear_radius_m = c.shear_radius_m,
-                               .radius_m = c.radius_m,
-                               .slip = c.slip,
-                               .slip_angle_rad = c.slip_angle_rad,
-                               .entry_angle_rad = entry}};
+/// Calls `solve` with a function that returns the shear displacement of the rim at an entry angle.
+template <class Solve>
+auto withDisplacement(const WheelContact& c, const Solve& solve) {
+  if (c.slip_angle_rad == 0.0)
+    return solve([&](double entry) { return ShearDisplacement{{c.shear_radius_m, c.slip, entry}}; });
+  return solve([&](double entry) {
+    return SideSlipDisplacement{{.shear_radius_m = c.shear_radius_m,
+                                 .radius_m = c.radius_m,
+                                 .slip = c.slip,
+                                 .slip_angle_rad = c.slip_angle_rad,
+                                 .entry_angle_rad = entry}};
+  });
 }
 
 template <class Rule>
 RimForces forcesBy(const WheelContact& c, double entry, double pressure_scale) {
   const EffectLaw law{c, pressure_scale};
-  if (c.slip_angle_rad == 0.0) return rimForces<Rule>(law, wheelOf(c), straight(c, entry));
-  return rimForces<Rule>(law, wheelOf(c), sideways(c, entry));
+  return withDisplacement(c, [&](const auto& at) { return rimForces<Rule>(law, wheelOf(c), at(entry)); });
 }
 
 template <class Rule>
@@ -142,9 +110,8 @@ std::optional<RimEquilibrium> carryBy(const WheelContact& c, double guess, doubl
                        .first_guess = guess > 0.0 ? guess : 0.3,
                        .growth = growth > 0.0 ? growth : 2.0 * c.sinkage_exponent + 1.0,
                        .tolerance = 1e-9};
-  if (c.slip_angle_rad == 0.0)
-    return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return straight(c, entry); });
-  return findEquilibrium<Rule>(law, wheelOf(c), wanted, [&](double entry) { return sideways(c, entry); });
+  return withDisplacement(c,
+                          [&](const auto& at) { return findEquilibrium<Rule>(law, wheelOf(c), wanted, at); });
 }
 
 /// Forces at an entry angle. The shear stress of a braked rim, with long displacements, rises steeply at the
@@ -158,13 +125,8 @@ std::optional<RimEquilibrium> carry(const WheelContact& c, double guess, double 
   return c.slip < 0.0 ? carryBy<BrakedRimRule>(c, guess, growth) : carryBy<QuickRimRule>(c, guess, growth);
 }
 
-double sinkageOf(double radius_m, double entry) {
-  const double half = std::sin(0.5 * entry);
-  return 2.0 * radius_m * half * half;
-}
-
-double entryOf(double radius_m, double sinkage_m) {
-  return sinkage_m >= radius_m ? kDeepest : 2.0 * std::asin(std::sqrt(0.5 * sinkage_m / radius_m));
+double entryOf(const WheelContact& c, double sinkage_m) {
+  return sinkage_m >= c.radius_m ? kDeepest : entryAngle_rad(wheelOf(c), sinkage_m);
 }
 
 /// Forces at an imposed entry angle. The pressure is scaled to carry the load; every force is linear in the
@@ -234,7 +196,7 @@ double bulldozing_N(const WheelContact& c, double entry) {
 ContactForces solveRim(const WheelContact& c, double entry_guess_rad, double growth) {
   const auto carried = carry(c, entry_guess_rad, growth);
   const double static_entry = carried ? carried->entry_angle_rad : kDeepest;
-  const double z0 = sinkageOf(c.radius_m, static_entry);
+  const double z0 = sinkage_m(wheelOf(c), static_entry);
   if (carried && !digs(c)) {
     ContactForces forces = forcesOf(carried->forces, z0, static_entry, static_entry);
     forces.growth = carried->growth;
@@ -243,7 +205,7 @@ ContactForces solveRim(const WheelContact& c, double entry_guess_rad, double gro
   const double dug = (c.sinkage_gain - 1.0) * z0 + c.dug_m;
   const double deeper = c.ploughed_m > 0.0 ? std::hypot(dug, c.ploughed_m) : dug;
   const double z = std::clamp(z0 + deeper + c.extra_sinkage_m, 1e-6 * c.radius_m, 1.95 * c.radius_m);
-  const double entry = entryOf(c.radius_m, z);
+  const double entry = entryOf(c, z);
   WheelContact filled = c;
   filled.rebound = std::min(1.0, c.rebound + c.rear_fill * std::max(0.0, dug) / z);
   ContactForces forces = forcesOf(imposed(filled, entry), z, entry, static_entry);
@@ -315,35 +277,37 @@ void solveContacts(std::vector<WheelContact> contacts, SolvedContacts& solved) {
 
 namespace {
 
+/// Telemetry column that is a field of WheelState or of its wheel.
 struct Column {
   const char* name;
-  double (*value)(const WheelState&);
-  void (*set)(WheelState&, double);
+  double WheelState::*field = nullptr;
+  double Wheel::*of_wheel = nullptr;
+
+  double value(const WheelState& s) const {
+    return field ? s.*field : of_wheel ? s.wheel.*of_wheel : static_cast<double>(s.wheel.grouser_count);
+  }
+  void set(WheelState& s, double value) const {
+    if (field)
+      s.*field = value;
+    else if (of_wheel)
+      s.wheel.*of_wheel = value;
+    else
+      s.wheel.grouser_count = static_cast<int>(std::lround(value));
+  }
 };
 
-constexpr Column kColumns[] = {
-    {"slip", [](const WheelState& s) { return s.slip; }, [](WheelState& s, double v) { s.slip = v; }},
-    {"slip_angle_rad", [](const WheelState& s) { return s.slip_angle_rad; },
-     [](WheelState& s, double v) { s.slip_angle_rad = v; }},
-    {"load_N", [](const WheelState& s) { return s.load_N; }, [](WheelState& s, double v) { s.load_N = v; }},
-    {"speed_mps", [](const WheelState& s) { return s.speed_mps; },
-     [](WheelState& s, double v) { s.speed_mps = v; }},
-    {"rim_speed_mps", [](const WheelState& s) { return s.rim_speed_mps; },
-     [](WheelState& s, double v) { s.rim_speed_mps = v; }},
-    {"time_s", [](const WheelState& s) { return s.time_s; }, [](WheelState& s, double v) { s.time_s = v; }},
-    {"pass_index", [](const WheelState& s) { return s.pass_index; },
-     [](WheelState& s, double v) { s.pass_index = v; }},
-    {"slope_rad", [](const WheelState& s) { return s.slope_rad; },
-     [](WheelState& s, double v) { s.slope_rad = v; }},
-    {"wheel_radius_m", [](const WheelState& s) { return s.wheel.radius_m; },
-     [](WheelState& s, double v) { s.wheel.radius_m = v; }},
-    {"wheel_width_m", [](const WheelState& s) { return s.wheel.width_m; },
-     [](WheelState& s, double v) { s.wheel.width_m = v; }},
-    {"grouser_height_m", [](const WheelState& s) { return s.wheel.grouser_height_m; },
-     [](WheelState& s, double v) { s.wheel.grouser_height_m = v; }},
-    {"grouser_count", [](const WheelState& s) { return static_cast<double>(s.wheel.grouser_count); },
-     [](WheelState& s, double v) { s.wheel.grouser_count = static_cast<int>(std::lround(v)); }},
-};
+constexpr Column kColumns[] = {{"slip", &WheelState::slip},
+                               {"slip_angle_rad", &WheelState::slip_angle_rad},
+                               {"load_N", &WheelState::load_N},
+                               {"speed_mps", &WheelState::speed_mps},
+                               {"rim_speed_mps", &WheelState::rim_speed_mps},
+                               {"time_s", &WheelState::time_s},
+                               {"pass_index", &WheelState::pass_index},
+                               {"slope_rad", &WheelState::slope_rad},
+                               {"wheel_radius_m", nullptr, &Wheel::radius_m},
+                               {"wheel_width_m", nullptr, &Wheel::width_m},
+                               {"grouser_height_m", nullptr, &Wheel::grouser_height_m},
+                               {"grouser_count"}};
 
 }  // namespace
 
@@ -591,30 +555,31 @@ RefinedModel withoutSensors(RefinedModel model) {
   return model;
 }
 
+double SoilParameter::get(const Soil& soil) const {
+  return field ? soil.*field : 0.0;
+}
+
+void SoilParameter::set(Soil& soil, double value) const {
+  if (field) {
+    soil.*field = value;
+  } else {  // value is a step, as get() returns 0
+    soil.cohesive_modulus *= std::exp(value);
+    soil.frictional_modulus *= std::exp(value);
+  }
+}
+
 const std::vector<SoilParameter>& soilParameters() {
   static const std::vector<SoilParameter> all{
-      {"cohesion_Pa", 0.0, 1e5, 500.0, [](const Soil& s) { return s.cohesion_Pa; },
-       [](Soil& s, double v) { s.cohesion_Pa = v; }},
-      {"friction_angle_rad", 0.05, 1.2, 0.05, [](const Soil& s) { return s.friction_angle_rad; },
-       [](Soil& s, double v) { s.friction_angle_rad = v; }},
-      {"sinkage_exponent", 0.1, 3.0, 0.1, [](const Soil& s) { return s.sinkage_exponent; },
-       [](Soil& s, double v) { s.sinkage_exponent = v; }},
-      {"log_stiffness", -8.0, 8.0, 0.2, [](const Soil&) { return 0.0; },
-       [](Soil& s, double v) {  // v is a step, as get() always returns 0
-         s.cohesive_modulus *= std::exp(v);
-         s.frictional_modulus *= std::exp(v);
-       }},
-      {"shear_modulus_m", 5e-4, 0.3, 0.003, [](const Soil& s) { return s.shear_modulus_m; },
-       [](Soil& s, double v) { s.shear_modulus_m = v; }},
-      {"c1", 0.0, 1.0, 0.05, [](const Soil& s) { return s.c1; }, [](Soil& s, double v) { s.c1 = v; }},
-      {"c2", -1.0, 1.0, 0.05, [](const Soil& s) { return s.c2; }, [](Soil& s, double v) { s.c2 = v; }},
-      {"density_kg_m3", 200.0, 5000.0, 100.0, [](const Soil& s) { return s.density_kg_m3; },
-       [](Soil& s, double v) { s.density_kg_m3 = v; }},
-      {"digging_exponent", 0.0, 2.0, 0.1, [](const Soil& s) { return s.digging_exponent; },
-       [](Soil& s, double v) { s.digging_exponent = v; }},
-      {"side_bulldozing", 0.0, 10.0, 0.3, [](const Soil& s) { return s.side_bulldozing; },
-       [](Soil& s, double v) { s.side_bulldozing = v; }},
-  };
+      {"cohesion_Pa", 0.0, 1e5, 500.0, &Soil::cohesion_Pa},
+      {"friction_angle_rad", 0.05, 1.2, 0.05, &Soil::friction_angle_rad},
+      {"sinkage_exponent", 0.1, 3.0, 0.1, &Soil::sinkage_exponent},
+      {"log_stiffness", -8.0, 8.0, 0.2, nullptr},
+      {"shear_modulus_m", 5e-4, 0.3, 0.003, &Soil::shear_modulus_m},
+      {"c1", 0.0, 1.0, 0.05, &Soil::c1},
+      {"c2", -1.0, 1.0, 0.05, &Soil::c2},
+      {"density_kg_m3", 200.0, 5000.0, 100.0, &Soil::density_kg_m3},
+      {"digging_exponent", 0.0, 2.0, 0.1, &Soil::digging_exponent},
+      {"side_bulldozing", 0.0, 10.0, 0.3, &Soil::side_bulldozing}};
   return all;
 }
 

@@ -36,9 +36,11 @@ struct Reading {
   double drawbar_pull_N = 0.0;  ///< drawbar pull DP
   double side_force_N = 0.0;    ///< side force F
 
-  double denominator(Channel channel) const;      ///< returns r for sinkage, r W for torque, otherwise W
-  double scaled(Channel channel) const;           ///< returns the scaled channel [-]
-  void addScaled(Channel channel, double value);  ///< adds `value` [-] to the scaled channel
+  double& operator[](Channel channel);        ///< returns the reading of the channel
+  double denominator(Channel channel) const;  ///< returns r for sinkage, r W for torque, otherwise W
+  double scaled(Channel channel) const;       ///< returns the scaled channel [-]
+  /// Adds `value` [-] to the scaled channel.
+  void addScaled(Channel channel, double value) { (*this)[channel] += value * denominator(channel); }
 };
 
 /// Contact of one wheel with all quantities that an effect may change, and the solution of this contact. The
@@ -344,9 +346,12 @@ RefinedModel withoutSensors(RefinedModel model);
 /// Soil parameter that a fit may change, with access to its value in a Soil.
 struct SoilParameter {
   const char* name;
-  double low, high, scale;     ///< bounds and typical step of a fit, in the unit of the parameter
-  double (*get)(const Soil&);  ///< returns the value in a soil; 0 for log_stiffness
-  void (*set)(Soil&, double);  ///< sets the value in a soil; log_stiffness v multiplies k_c and k_phi by e^v
+  double low, high, scale;  ///< bounds and typical step of a fit, in the unit of the parameter
+  double Soil::*field;      ///< null: log_stiffness
+
+  double get(const Soil& soil) const;  ///< returns the value in a soil; 0 for log_stiffness
+  /// Sets the value in a soil; log_stiffness v multiplies k_c and k_phi by e^v.
+  void set(Soil& soil, double value) const;
 };
 /// Returns all soil parameters that a fit may change.
 const std::vector<SoilParameter>& soilParameters();

@@ -3,9 +3,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
@@ -15,10 +12,6 @@
 namespace talus::terramech {
 
 namespace {
-
-// Smallest ratio of extreme eigenvalues of the features' correlation matrix; below, the samples lie on a line
-// (ours).
-constexpr double kLeastSpread = 1e-10;
 
 double entryOf(const Wheel& wheel, const WheelSample& sample) {
   RangeCheck("drawbar pull").above("load_N", sample.load_N, 0.0);
@@ -65,32 +58,6 @@ double PullPlane::at(const Wheel& wheel, const WheelSample& sample) const {
   return c1 * torqueOverLoadRadius(wheel, sample) + c2 * sample.sinkage_m / wheel.radius_m + c3;
 }
 
-void PullPlaneFitter::add(const Wheel& wheel, const WheelSample& sample, double pull_over_load) {
-  const Eigen::Vector4d row(torqueOverLoadRadius(wheel, sample), sample.sinkage_m / wheel.radius_m, 1.0,
-                            pull_over_load);
-  gram_ += row * row.transpose();
-  ++count_;
-}
-
-PullPlaneFit PullPlaneFitter::estimate() const {
-  if (count_ < 4) throw std::domain_error("plane fit of drawbar pull: at least four samples are required");
-  const Eigen::Matrix3d normal = gram_.topLeftCorner<3, 3>();
-  const Eigen::Vector3d scale = normal.diagonal().cwiseSqrt().cwiseInverse();
-  const auto spread =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scale.asDiagonal() * normal * scale.asDiagonal())
-          .eigenvalues();
-  if (!(spread[0] > kLeastSpread * spread[2])) {
-    throw std::domain_error("plane fit of drawbar pull: the samples lie on a line; vary load and slip");
-  }
-  const Eigen::Vector3d c = normal.ldlt().solve(gram_.topRightCorner<3, 1>());
-  const Eigen::Vector4d residual(c[0], c[1], c[2], -1.0);
-  const double variance = std::max(0.0, residual.dot(gram_ * residual)) / (static_cast<double>(count_) - 3.0);
-  return {.plane = {c[0], c[1], c[2]},
-          .covariance = variance * normal.inverse(),
-          .residual_std = std::sqrt(variance),
-          .samples = count_};
-}
-
 double PullAngleModel::angle_rad(const Wheel& wheel, const WheelSample& sample) const {
   const double theta_1 = entryOf(wheel, sample);
   return (a0 + a1 * sample.slip + a2 * theta_1 + a3 * torqueOverLoadRadius(wheel, sample)) * theta_1;
@@ -118,22 +85,9 @@ namespace {
 // Draws with a weight below this fraction of the mean weight are neglected.
 constexpr double kLightest = 1e-3;
 
-// Recursive weighted mean and variance.
-class RunningMoments {
- public:
-  void add(double value, double weight) {
-    weight_ += weight;
-    const double away = value - mean_;
-    mean_ += away * weight / weight_;
-    squares_ += weight * away * (value - mean_);
-  }
-  Estimate get() const { return {.value = mean_, .std = std::sqrt(squares_ / weight_)}; }
-
- private:
-  double weight_ = 0.0;
-  double mean_ = 0.0;
-  double squares_ = 0.0;
-};
+Estimate meanOf(const PairMoments& m) {
+  return {.value = m.x, .std = std::sqrt(m.xx / m.weight)};
+}
 
 struct SolvedWheel {
   double pull_over_load = 0.0;
@@ -176,13 +130,13 @@ Estimate pullOverLoad(const Wheel& wheel, const WheelSample& sample, const SoilP
   const SoilClass any;
   const SoilObjective objective(any, {noise, 0.0});
   const double lightest = kLightest / static_cast<double>(posterior.draws.size());
-  RunningMoments pull;
+  PairMoments pull;
   for (const SoilDraw& d : posterior.draws) {
     if (d.weight < lightest) continue;
     const ForceVector f = contactForces(d.soil, wheel, objective.likelyState(d.soil, {wheel, sample}));
-    pull.add(f[kPull] / f[kLoad], d.weight);
+    pull.add(f[kPull] / f[kLoad], 0.0, d.weight);
   }
-  return pull.get();
+  return meanOf(pull);
 }
 
 PullForecast forecastPull(const Wheel& wheel, const SoilPosterior& posterior,
@@ -192,26 +146,26 @@ PullForecast forecastPull(const Wheel& wheel, const SoilPosterior& posterior,
   range.above("reference_slip", options.reference_slip, 0.0);
   range.within("reference_slip", options.reference_slip, {0.0, 1.0});
   range.atLeast("draws", options.draws, 1);
-  RunningMoments reference, most, slip_of_most, sinkage;
+  PairMoments reference, most, slip_of_most, sinkage;
   for (const ContactSoil* drawn : evenly(posterior.draws, options.draws)) {
     const Soil soil = soilOf(*drawn);
     const SolvedWheel at = reply(wheel, soil, {.load_N = options.load_N, .slip = options.reference_slip});
-    reference.add(at.pull_over_load, 1.0);
-    sinkage.add(at.sinkage_over_radius, 1.0);
+    reference.add(at.pull_over_load, 0.0);
+    sinkage.add(at.sinkage_over_radius, 0.0);
     double best = -1e9;
     double best_slip = 0.0;
     for (const double slip : kForecastSlips) {
       const double pull = reply(wheel, soil, {.load_N = options.load_N, .slip = slip}).pull_over_load;
       if (pull > best) best = pull, best_slip = slip;
     }
-    most.add(best, 1.0);
-    slip_of_most.add(best_slip, 1.0);
+    most.add(best, 0.0);
+    slip_of_most.add(best_slip, 0.0);
   }
-  return {.at_reference = reference.get(),
-          .most = most.get(),
-          .most_slip = slip_of_most.get().value,
-          .sinkage_over_radius = sinkage.get(),
-          .climbable_slope_rad = climbableSlope_rad(most.get())};
+  return {.at_reference = meanOf(reference),
+          .most = meanOf(most),
+          .most_slip = slip_of_most.x,
+          .sinkage_over_radius = meanOf(sinkage),
+          .climbable_slope_rad = climbableSlope_rad(meanOf(most))};
 }
 
 const PullForecast& PullForecasts::solved(const Wheel& wheel, int step) {

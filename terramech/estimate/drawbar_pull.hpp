@@ -47,32 +47,6 @@ struct PullPlane {
 
 /// Plane from simulations (thesis Eqs. 3.20, 3.21).
 inline constexpr PullPlane kThesisPlane{1.0, -1.0, -0.1};
-/// Plane from two measured soils (thesis 3.4).
-inline constexpr PullPlane kThesisExperimentPlane{1.5, -1.0, -0.2};
-
-/// Plane fitted to samples, with its covariance and residual.
-struct PullPlaneFit {
-  PullPlane plane;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance of (C1, C2, C3)
-  double residual_std = 0.0;  ///< rms residual of DP/W about the plane, with n - 3 degrees of freedom [-]
-  std::size_t samples = 0;    ///< number n of samples
-};
-
-/// Recursive least-squares fit of a PullPlane (thesis Eqs. 3.16 to 3.19) in constant memory.
-class PullPlaneFitter {
- public:
-  /// Adds a sample and its measured or simulated DP/W = pull_over_load.
-  void add(const Wheel& wheel, const WheelSample& sample, double pull_over_load);
-
-  /// Returns the fitted plane. Throws std::domain_error if there are fewer than four samples, or if the
-  /// samples lie on a line in the plane of T/(rW) and z/r.
-  PullPlaneFit estimate() const;
-
- private:
-  Eigen::Matrix4d gram_ = Eigen::Matrix4d::Zero();  // Gram matrix of (T/(rW), z/r, 1, DP/W)
-  std::size_t count_ = 0;
-};
-
 /// Model of the rim angle theta at which a single equivalent force acts: theta = (a0 + a1 i + a2 theta_1 + a3
 /// T/(rW)) theta_1 (ours).
 struct PullAngleModel {

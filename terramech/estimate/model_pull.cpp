@@ -62,12 +62,8 @@ void takePriorAsCovariance(RefinedModel& model) {
 }  // namespace
 
 bool isSensorFault(const Effect& effect) {
-  if (effect.empirical()) return false;
-  const auto names = [&](const std::vector<EffectForm>& forms) {
-    return std::ranges::any_of(
-        forms, [&](const EffectForm& f) { return effect.name == f.name && f.read != nullptr; });
-  };
-  return names(detail::sensorEffects()) || names(detail::driftEffects());
+  const EffectForm* form = findEffect(effect.name);
+  return form && form->of_sensor && form->read;
 }
 
 RefinedModel groundTruthOf(const RefinedModel& model) {

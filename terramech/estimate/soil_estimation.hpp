@@ -249,11 +249,6 @@ class SoilFilter {
   /// removed samples. Takes longer than add(). Throws std::domain_error before the first sample.
   SoilPosterior posterior() const;
 
-  /// Return the most likely soil of the most probable soil class, and the probabilities of the classes,
-  /// without further computation.
-  ContactSoil mode() const;
-  std::vector<double> classProbabilities() const;
-
   /// Returns the number of samples added.
   std::size_t samples() const;
 

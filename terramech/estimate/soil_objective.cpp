@@ -81,18 +81,17 @@ Estimate logLoad(const WheelSample& sample, const ReadingErrors& errors) {
 }  // namespace
 
 void StatePopulation::Spread::add(const Estimate& reading) {
-  count += 1.0;
-  const double away = reading.value - mean;
-  mean += away / count;
-  squares += away * (reading.value - mean);
-  error_variance += (reading.std * reading.std - error_variance) / count;
+  readings.add(reading.value, 0.0);
+  error_variance += (reading.std * reading.std - error_variance) / readings.weight;
 }
 
 // Combines a reading with the population. V, the variance of the true values, is the variance of Student's
 // predictive distribution of the readings minus the mean error variance.
 Estimate StatePopulation::Spread::combine(const Estimate& reading) const {
+  const double count = readings.weight, mean = readings.x;
   if (count <= 3.0) return reading;
-  const double of_readings = squares / (count - 1.0) * (count + 1.0) / count * (count - 1.0) / (count - 3.0);
+  const double of_readings =
+      readings.xx / (count - 1.0) * (count + 1.0) / count * (count - 1.0) / (count - 3.0);
   const double least = error_variance / count;
   const double variance = std::max(of_readings - error_variance, least);
   const double share = variance / (variance + reading.std * reading.std);
@@ -118,9 +117,9 @@ Estimate StatePopulation::slip(const WheelSample& sample, const ReadingErrors& e
 namespace {
 
 constexpr double kOutlierScale = 10.0;  // standard deviation of an outlier, in units of the error
-constexpr int kMostPasses = 40;         // Gauss-Newton steps; 5 to 10 are usual
 // Factor on the standard deviations of the proposal, so that its tails cover the posterior's.
 constexpr double kWiden = 1.2;
+constexpr int kMostPasses = 40;  // Gauss-Newton steps; 5 to 10 are usual
 
 // The four readings with their errors; load and slip are combined with the population of all rows.
 struct Readings {
@@ -218,19 +217,7 @@ SoilQuadratic SoilQuadratic::movedTo(const SoilVector& y) const {
 }
 
 SoilQuadratic SoilObjective::expand(const SoilVector& y, std::span<const WheelReading> samples,
-                                    const SoilQuadratic& before) const {
-  SoilQuadratic sum = before.movedTo(y);
-  for (const WheelReading& r : samples) {
-    const SampleMisfit m = misfit(y, r);
-    sum.cost += m.cost;
-    sum.gradient -= m.weight * m.derivative.transpose() * m.residual;
-    sum.information += m.weight * m.derivative.transpose() * m.derivative;
-  }
-  return sum;
-}
-
-SoilQuadratic SoilObjective::expandWhole(const SoilVector& y, std::span<const WheelReading> samples,
-                                         const SoilQuadratic& before) const {
+                                    const SoilQuadratic& before, Gradient gradient) const {
   constexpr double kStep = 1e-6;
   constexpr std::size_t kBlock = 1024;
   SoilQuadratic sum = before.movedTo(y);
@@ -242,6 +229,10 @@ SoilQuadratic SoilObjective::expandWhole(const SoilVector& y, std::span<const Wh
     const SampleMisfit m = misfit(y, samples[row]);
     sum.cost += m.cost;
     sum.information += m.weight * m.derivative.transpose() * m.derivative;
+    if (gradient == Gradient::GaussNewton) {
+      sum.gradient -= m.weight * m.derivative.transpose() * m.residual;
+      continue;
+    }
     for (int k = 0; k < kSoilParameters; ++k)
       sum.gradient[k] += (misfit(y + kStep * SoilVector::Unit(k), samples[row]).cost - m.cost) / kStep;
   }
@@ -262,7 +253,7 @@ double SoilObjective::meanSquare(const SoilVector& y, std::span<const WheelReadi
 }
 
 SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> samples,
-                  const SoilQuadratic& before, const SoilVector& start) {
+                  const SoilQuadratic& before, const SoilVector& start, SoilObjective::Gradient gradient) {
   const SoilClass& soil = objective.soilClass();
   struct Local {
     SoilQuadratic likelihood;
@@ -271,7 +262,7 @@ SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> 
     SoilMatrix information;
   };
   const auto at = [&](const SoilVector& x) {
-    const SoilQuadratic q = objective.expand(coordinates(soil, x), samples, before);
+    const SoilQuadratic q = objective.expand(coordinates(soil, x), samples, before, gradient);
     const SoilVector stretch = coordinateSlope(soil, x);
     return Local{
         q, q.cost + 0.5 * x.squaredNorm(), -x - stretch.cwiseProduct(q.gradient),
@@ -297,11 +288,12 @@ SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> 
   return {.x = x, .likelihood = here.likelihood, .log_evidence = -here.cost - log_root};
 }
 
-SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelReading> samples) {
+SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelReading> samples,
+                        SoilObjective::Gradient gradient) {
   const SoilVector middle = SoilVector::Zero();
-  const SoilMode near = findMode(objective, samples, {}, middle);
-  const SoilMode led =
-      findMode(objective, samples, {}, findMode(objective.trusting(), samples, {}, middle).x);
+  const SoilMode near = findMode(objective, samples, {}, middle, gradient);
+  const SoilVector start = findMode(objective.trusting(), samples, {}, middle, gradient).x;
+  const SoilMode led = findMode(objective, samples, {}, start, gradient);
   return led.log_evidence > near.log_evidence ? led : near;
 }
 
@@ -332,168 +324,6 @@ double priorCost(const SoilClass& soil, const SoilVector& y) {
   return cost;
 }
 
-namespace {
-
-constexpr std::size_t kFirst = 512;    // samples of the first search
-constexpr std::size_t kGrowth = 16;    // growth factor of the number of samples per stage
-constexpr std::size_t kWeighed = 300;  // up to this number of samples each draw is weighted with all of them
-constexpr std::size_t kCurved = 1024;  // samples for the correction of the curvature
-constexpr double kHopeless = 25.0;     // log probability below that of the best class at which a class is
-                                       // excluded
-constexpr double kEnough = 1e-2;       // increase of log probability below which the search ends
-
-// Progress of a search with an unknown number of passes: each pass counts as half of the remaining fraction.
-class PassWatch {
- public:
-  PassWatch(const ProgressMonitor& outer, double from, double to)
-      : outer_(outer), from_(from), left_(to - from) {}
-
-  ProgressMonitor watch() {
-    return {.progress = [this](double fraction) { report(fraction); }, .stop = outer_.stop};
-  }
-
- private:
-  void report(double fraction) {
-    if (fraction < last_) from_ += 0.5 * left_, left_ *= 0.5;
-    last_ = fraction;
-    outer_.report(from_ + 0.5 * left_ * fraction);
-  }
-
-  const ProgressMonitor& outer_;
-  double from_, left_, last_ = 0.0;
-};
-
-struct Candidate {
-  SoilObjective objective;
-  SoilQuadratic likelihood = {};  // expanded about the mode
-  double log_probability = -std::numeric_limits<double>::infinity();
-  bool alive = true;
-};
-
-void dropHopeless(std::vector<Candidate>& candidates) {
-  const double best = std::ranges::max_element(candidates, {}, &Candidate::log_probability)->log_probability;
-  for (Candidate& c : candidates) {
-    c.alive = c.alive && c.log_probability > best - kHopeless;
-    if (!c.alive) c.log_probability = -std::numeric_limits<double>::infinity();
-  }
-}
-
-bool bounded(const SoilObjective& objective, int k) {
-  return objective.soilClass().parameters[static_cast<std::size_t>(k)].bounded();
-}
-
-// Adds the Gaussian priors to the likelihood.
-SoilQuadratic withPrior(const SoilObjective& objective, SoilQuadratic q) {
-  for (int k = 0; k < kSoilParameters; ++k) {
-    if (bounded(objective, k)) continue;
-    q.cost += 0.5 * q.at[k] * q.at[k];
-    q.gradient[k] += q.at[k];
-    q.information(k, k) += 1.0;
-  }
-  return q;
-}
-
-// Returns the minimum of a quadratic in the box of the prior, by coordinate descent.
-SoilVector lowest(const SoilObjective& objective, const SoilQuadratic& q) {
-  constexpr int kMostSweeps = 10000;
-  SoilVector y = q.at;
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    double moved = 0.0;
-    for (int k = 0; k < kSoilParameters; ++k) {
-      const double slope = q.gradient[k] + q.information.row(k).dot(y - q.at);
-      double next = y[k] - slope / q.information(k, k);
-      if (bounded(objective, k)) next = std::clamp(next, 0.0, 1.0);
-      if (!std::isfinite(next)) continue;  // parameter without influence on any sample
-      moved = std::max(moved, std::abs(next - y[k]));
-      y[k] = next;
-    }
-    if (moved < 1e-9) break;
-  }
-  return y;
-}
-
-// Difference between the curvature of the full cost and that of Gauss-Newton, which neglects that the
-// covariance of a residual depends on the soil through the errors of z and i. The difference is computed from
-// a subset and scaled to all samples.
-SoilMatrix curvatureCorrection(const SoilObjective& objective, const SoilVector& y,
-                               std::span<const WheelReading> samples) {
-  constexpr double kStep = 1e-3;
-  const std::vector<WheelReading> part = spreadEvenly(samples, kCurved);
-  const auto expansion = [&](const SoilVector& at) { return objective.expandWhole(at, part, {}); };
-  SoilMatrix correction = -expansion(y).information;
-  for (int k = 0; k < kSoilParameters; ++k) {
-    const SoilVector step = kStep * SoilVector::Unit(k);
-    const SoilVector column = (expansion(y + step).gradient - expansion(y - step).gradient) / (2.0 * kStep);
-    correction.col(k) += 0.5 * column;
-    correction.row(k) += 0.5 * column.transpose();
-  }
-  return static_cast<double>(samples.size()) / static_cast<double>(part.size()) * correction;
-}
-
-SoilQuadratic curved(SoilQuadratic q, const SoilMatrix& correction) {
-  const SoilMatrix whole = q.information + correction;
-  if ((whole + SoilMatrix::Identity()).llt().info() == Eigen::Success) q.information = whole;
-  return q;
-}
-
-// Finds the most likely soil of a class from `start`, by Newton's method in the box of the prior. In the
-// coordinates x of findMode() the correlation of k and n (pressure k z^n) is curved; in y it is straight.
-SoilQuadratic descend(const SoilObjective& objective, std::span<const WheelReading> samples,
-                      const SoilVector& start) {
-  constexpr int kMostModePasses = 20;
-  const SoilMatrix correction = curvatureCorrection(objective, start, samples);
-  SoilQuadratic here = objective.expandWhole(start, samples, {});
-  double damping = 0.0;
-  for (int pass = 0; pass < kMostModePasses; ++pass) {
-    SoilQuadratic model = withPrior(objective, curved(here, correction));
-    const double cost = model.cost;
-    model.information.diagonal() *= 1.0 + damping;
-    const SoilVector next = lowest(objective, model);
-    if (cost - model.costAt(next) < kEnough) break;
-    const SoilQuadratic there = objective.expandWhole(next, samples, {});
-    const double gain = cost - withPrior(objective, there).cost;
-    damping = gain > 0.0 ? 0.1 * damping : std::max(0.1, 10.0 * damping);
-    if (gain > 0.0) here = there;
-  }
-  return here;
-}
-
-// Returns the mean of the truncated Gaussian approximation of a class' posterior. If the bounds of the class
-// truncate the likelihood, the mean is far from the mode.
-SoilVector middle(const SoilObjective& objective, const SoilQuadratic& likelihood) {
-  constexpr int kDraws = 64;
-  const TruncatedGaussian allowed = proposal(objective.soilClass(), likelihood);
-  const Eigen::MatrixXd points = evenPoints(kSoilParameters, kDraws);
-  SoilVector sum = SoilVector::Zero();
-  for (Eigen::Index k = 0; k < kDraws; ++k) sum += allowed.draw(points.col(k)).at;
-  return sum / kDraws;
-}
-
-double logEvidence(const SoilObjective& objective, const SoilQuadratic& likelihood) {
-  SoilQuadratic q = withPrior(objective, likelihood);
-  q.information += SoilMatrix::Identity();
-  return -q.cost - q.information.llt().matrixL().toDenseMatrix().diagonal().array().log().sum();
-}
-
-void search(std::vector<Candidate>& candidates, std::span<const WheelReading> samples, bool first,
-            const ProgressMonitor& watch) {
-  const auto alive = static_cast<double>(std::ranges::count(candidates, true, &Candidate::alive));
-  double done = 0.0;
-  for (Candidate& c : candidates) {
-    if (!c.alive) continue;
-    PassWatch passes(watch, done / alive, (done + 1.0) / alive);
-    const SoilObjective watched = c.objective.watchedBy(passes.watch());
-    const SoilVector start = first ? findModeAfresh(watched, samples).likelihood.at : c.likelihood.at;
-    c.likelihood = descend(watched, samples, start);
-    c.log_probability =
-        std::log(c.objective.soilClass().probability) + logEvidence(c.objective, c.likelihood);
-    done += 1.0;
-  }
-  dropHopeless(candidates);
-}
-
-}  // namespace
-
 std::vector<WheelReading> spreadEvenly(std::span<const WheelReading> samples, std::size_t count) {
   if (samples.size() <= count) return {samples.begin(), samples.end()};
   std::vector<WheelReading> chosen;
@@ -507,6 +337,33 @@ std::vector<WheelReading> spreadEvenly(std::span<const WheelReading> samples, st
 
 namespace {
 
+using enum SoilObjective::Gradient;
+
+constexpr std::size_t kFirst = 512;    // samples of the first search
+constexpr std::size_t kGrowth = 16;    // growth factor of the number of samples per stage
+constexpr std::size_t kWeighed = 300;  // up to this number of samples each draw is weighted with all of them
+constexpr std::size_t kCurved = 1024;  // samples for the correction of the curvature
+constexpr double kHopeless = 25.0;     // log probability below that of the best class at which a class is
+                                       // excluded
+
+// Difference between the curvature of the full cost and that of Gauss-Newton, which neglects that the
+// covariance of a residual depends on the soil through the errors of z and i. The difference is computed from
+// a subset and scaled to all samples.
+SoilMatrix curvatureCorrection(const SoilObjective& objective, const SoilVector& y,
+                               std::span<const WheelReading> samples) {
+  constexpr double kStep = 1e-3;
+  const std::vector<WheelReading> part = spreadEvenly(samples, kCurved);
+  const auto expansion = [&](const SoilVector& at) { return objective.expand(at, part, {}, Whole); };
+  SoilMatrix correction = -expansion(y).information;
+  for (int k = 0; k < kSoilParameters; ++k) {
+    const SoilVector step = kStep * SoilVector::Unit(k);
+    const SoilVector column = (expansion(y + step).gradient - expansion(y - step).gradient) / (2.0 * kStep);
+    correction.col(k) += 0.5 * column;
+    correction.row(k) += 0.5 * column.transpose();
+  }
+  return static_cast<double>(samples.size()) / static_cast<double>(part.size()) * correction;
+}
+
 // First-order propagation of the errors of sinkage and slip causes an error of up to 2 % in friction angle
 // and shear modulus for any number of samples. Above kTrusted samples the likelihood is therefore not
 // sharpened further (ours; docs/measurements/terramech.md).
@@ -519,42 +376,52 @@ SoilQuadratic limitSharpness(SoilQuadratic q, std::size_t samples) {
   return q;
 }
 
+double logProbability(const ClassFit& fit) {
+  return std::log(fit.objective.soilClass().probability) + fit.mode.log_evidence;
+}
+
 }  // namespace
 
-SoilPosterior fitManySamples(const std::vector<SoilObjective>& classes, std::span<const WheelReading> samples,
-                             const SoilFitOptions& options) {
-  std::vector<Candidate> candidates;
-  candidates.reserve(classes.size());
-  for (const SoilObjective& objective : classes) candidates.push_back({objective});
-  for (std::size_t count = kFirst;; count *= kGrowth) {
+std::span<const WheelReading> weighted(std::span<const WheelReading> samples) {
+  return samples.size() <= kWeighed ? samples : std::span<const WheelReading>{};
+}
+
+std::vector<ClassFit> fitClasses(const std::vector<SoilObjective>& classes,
+                                 std::span<const WheelReading> samples, const ProgressMonitor& watch) {
+  constexpr double kNever = -std::numeric_limits<double>::infinity();
+  std::vector<ClassFit> fits;
+  for (const SoilObjective& objective : classes) fits.push_back({objective, {}, {}});
+  for (std::size_t count = kFirst; !watch.stopped(); count *= kGrowth) {
     const bool all = count >= samples.size();
-    search(candidates, spreadEvenly(samples, count), count == kFirst,
-           all ? options.watch : ProgressMonitor{{}, options.watch.stop});
-    if (options.watch.stopped()) return {};
+    const std::vector<WheelReading> part = spreadEvenly(samples, count);
+    double best = kNever, done = 0.0;
+    for (ClassFit& fit : fits) {
+      RoundProgress rounds;
+      const auto report = [&](double share) {
+        if (all) watch.report((done + rounds.at(share)) / static_cast<double>(fits.size()));
+      };
+      const SoilObjective watched = fit.objective.watchedBy({report, watch.stop});
+      if (fit.mode.log_evidence > kNever)
+        fit.mode = count == kFirst ? findModeAfresh(watched, part, Whole)
+                                   : findMode(watched, part, {}, fit.mode.x, Whole);
+      best = std::max(best, logProbability(fit));
+      done += 1.0;
+    }
+    for (ClassFit& fit : fits)
+      if (!(logProbability(fit) > best - kHopeless)) fit.mode.log_evidence = kNever;
     if (all) break;
   }
-  options.watch.report(1.0);
-  const bool weighed = samples.size() <= kWeighed;
-  std::vector<ClassFit> fits;
-  for (Candidate& c : candidates) {
-    if (c.alive) {
-      const SoilVector at = middle(c.objective, c.likelihood);
-      c.likelihood = limitSharpness(
-          curved(c.objective.expandWhole(at, samples, {}), curvatureCorrection(c.objective, at, samples)),
-          samples.size());
-    }
-    fits.push_back(
-        {.objective = c.objective,
-         .before = weighed ? SoilQuadratic{} : c.likelihood,
-         .mode = {.x = {},
-                  .likelihood = c.likelihood,
-                  .log_evidence = c.log_probability - std::log(c.objective.soilClass().probability)}});
+  if (watch.stopped()) return {};
+  watch.report(1.0);
+  for (ClassFit& fit : fits) {
+    if (fit.mode.log_evidence == kNever) continue;
+    SoilQuadratic& q = fit.mode.likelihood;
+    const SoilMatrix whole = q.information + curvatureCorrection(fit.objective, q.at, samples);
+    if ((whole + SoilMatrix::Identity()).llt().info() == Eigen::Success) q.information = whole;
+    q = limitSharpness(q, samples.size());
+    if (weighted(samples).empty()) fit.before = q;
   }
-  SoilPosterior posterior =
-      samplePosterior(fits, weighed ? samples : std::span<const WheelReading>{}, options.draws);
-  const Candidate& best = *std::ranges::max_element(candidates, {}, &Candidate::log_probability);
-  posterior.misfit = best.objective.meanSquare(best.likelihood.at, samples);
-  return posterior;
+  return fits;
 }
 
 }  // namespace talus::terramech

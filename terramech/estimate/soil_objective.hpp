@@ -9,6 +9,7 @@
 #include <talus/common/common.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 
@@ -70,7 +71,8 @@ class StatePopulation {
     void add(const Estimate& reading);
     Estimate combine(const Estimate& reading) const;
 
-    double count = 0.0, mean = 0.0, squares = 0.0, error_variance = 0.0;
+    PairMoments readings;
+    double error_variance = 0.0;
   };
 
   Spread log_load_, slip_;
@@ -124,16 +126,13 @@ class SoilObjective {
   /// Returns the misfit of one sample at the soil with coordinates y.
   SampleMisfit misfit(const SoilVector& y, const WheelReading& reading) const;
 
-  /// Returns the second-order expansion (Gauss-Newton) of -log likelihood of the samples about y, plus
-  /// `before`.
-  SoilQuadratic expand(const SoilVector& y, std::span<const WheelReading> samples,
-                       const SoilQuadratic& before) const;
+  /// Gradient of expand(). Gauss-Newton neglects the gradient of the normalisation of the likelihood. This term is
+  /// small for a few samples and grows with their number; the whole gradient takes six times as long.
+  enum class Gradient { GaussNewton, Whole };
 
-  /// Returns the expansion of expand(), but with the gradient of the full cost. The Gauss-Newton gradient
-  /// neglects the gradient of the normalisation of the likelihood. This term is small for a few samples and
-  /// grows with their number. Takes six times as long as expand().
-  SoilQuadratic expandWhole(const SoilVector& y, std::span<const WheelReading> samples,
-                            const SoilQuadratic& before) const;
+  /// Returns the second-order expansion of -log likelihood of the samples about y, plus `before`.
+  SoilQuadratic expand(const SoilVector& y, std::span<const WheelReading> samples,
+                       const SoilQuadratic& before, Gradient gradient) const;
 
   /// Returns -log likelihood of the samples at y, plus the value of `before`.
   double cost(const SoilVector& y, std::span<const WheelReading> samples, const SoilQuadratic& before) const;
@@ -166,50 +165,53 @@ class SoilObjective {
 };
 
 /// Mode (most likely soil) of one soil class, in standard normal coordinates x: y = Phi(x) for a bounded
-/// parameter, otherwise y = x. In these coordinates the prior needs no bounds.
+/// parameter, otherwise y = x. In these coordinates the prior is the standard normal distribution without bounds.
 struct SoilMode {
   SoilVector x = SoilVector::Zero();  ///< coordinates of the mode
   SoilQuadratic likelihood;           ///< expansion of -log likelihood about y(x)
   double log_evidence = 0.0;          ///< log evidence of the class, by Laplace's approximation in x
 };
 
-/// Returns the mode given the samples and `before`, by damped Gauss-Newton steps from `start`.
+/// Returns the mode given the samples and `before`, by damped Newton steps from `start`.
 SoilMode findMode(const SoilObjective& objective, std::span<const WheelReading> samples,
-                  const SoilQuadratic& before, const SoilVector& start);
+                  const SoilQuadratic& before, const SoilVector& start, SoilObjective::Gradient gradient);
 
 /// Runs findMode() from the centre of the prior, and from the mode that findMode() finds with outlier_share =
 /// 0. Returns the result with the higher evidence.
-SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelReading> samples);
+SoilMode findModeAfresh(const SoilObjective& objective, std::span<const WheelReading> samples,
+                        SoilObjective::Gradient gradient);
 
 /// Returns the importance distribution of one soil class: the Gaussian given by the quadratic of -log
 /// likelihood, truncated to the bounds of the prior.
 TruncatedGaussian proposal(const SoilClass& soil, const SoilQuadratic& likelihood);
 
-/// Soil class with its mode, and the quadratic of samples that are no longer stored.
+/// Soil class with its mode, and the quadratic of samples that are not weighted with each draw.
 struct ClassFit {
   SoilObjective objective;
   SoilQuadratic before;
   SoilMode mode;
 };
 
-/// Draws importance samples of every soil class, weights them jointly and returns the posterior. Throws
-/// std::domain_error if no draw has a finite weight.
+/// Draws importance samples of every soil class, weights them jointly and returns the posterior without its misfit.
+/// Throws std::domain_error if no draw has a finite weight.
 SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<const WheelReading> samples,
                               int draws);
 
 /// Throws the exceptions of fitSoil() for invalid samples or options.
 void checkFit(std::span<const WheelReading> samples, const SoilFitOptions& options);
 
+/// Searches the mode of every soil class on 512 evenly spread samples, then on 16 times as many, and so on, in the
+/// classes that are not yet excluded. For more than 300 samples the likelihood of all samples is replaced by a quadratic
+/// approximation about the mode, so that a draw is not weighted with every sample. The time is about 50 us
+/// per sample; the memory does not depend on the number of samples. Returns no classes after a stop by the watch.
+std::vector<ClassFit> fitClasses(const std::vector<SoilObjective>& classes,
+                                 std::span<const WheelReading> samples, const ProgressMonitor& watch);
+
 /// Returns -log of the prior density of a soil class at the coordinates y inside its bounds.
 double priorCost(const SoilClass& soil, const SoilVector& y);
 
-/// Returns the posterior of the soil for many samples. The mode (most likely soil) of every soil class is
-/// searched on 512 evenly spread samples, then on 16 times as many, and so on, in the classes that are not
-/// yet excluded. For more than 300 samples the likelihood of all samples is replaced by a quadratic
-/// approximation about the mode, so that a draw is not weighted with every sample. The time is about 50 us
-/// per sample; the memory does not depend on the number of samples.
-SoilPosterior fitManySamples(const std::vector<SoilObjective>& classes, std::span<const WheelReading> samples,
-                             const SoilFitOptions& options);
+/// Returns the samples with which each draw is weighted: all of up to 300 samples, otherwise none.
+std::span<const WheelReading> weighted(std::span<const WheelReading> samples);
 
 /// Returns `count` samples that are spread evenly over all samples, in their order. Returns all samples if
 /// there are at most `count`.

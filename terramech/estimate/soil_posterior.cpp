@@ -122,10 +122,6 @@ namespace {
 // Probability below which classes are not sampled.
 constexpr double kNegligible = 1e-6;
 
-// Number of samples up to which the mode of Gauss-Newton suffices; Gauss-Newton neglects the gradient of the
-// normalisation.
-constexpr std::size_t kFew = 20;
-
 // Replaces log weights by weights with sum 1.
 void normalise(std::vector<double>& log_weights) {
   const double most = *std::ranges::max_element(log_weights);
@@ -235,6 +231,13 @@ void listUndetermined(const SoilVector& before, SoilPosterior& p) {
   }
 }
 
+double misfitOf(const std::vector<ClassFit>& classes, std::span<const WheelReading> samples) {
+  const ClassFit& best = *std::ranges::max_element(classes, {}, [](const ClassFit& fit) {
+    return std::log(fit.objective.soilClass().probability) + fit.mode.log_evidence;
+  });
+  return best.objective.meanSquare(best.mode.likelihood.at, samples);
+}
+
 void checkSample(const WheelReading& reading) {
   const auto& [wheel, s] = reading;
   validate(wheel);
@@ -266,9 +269,6 @@ SoilPosterior samplePosterior(const std::vector<ClassFit>& classes, std::span<co
   for (const ClassFit& fit : classes) {
     probabilities.push_back(std::log(fit.objective.soilClass().probability) + fit.mode.log_evidence);
   }
-  const auto best = std::ranges::max_element(probabilities) - probabilities.begin();
-  const ClassFit& likeliest = classes[static_cast<std::size_t>(best)];
-  posterior.misfit = likeliest.objective.meanSquare(likeliest.mode.likelihood.at, samples);
   normalise(probabilities);
   const Eigen::MatrixXd points = evenPoints(kSoilParameters, draws);
   std::vector<double> weights;
@@ -305,12 +305,11 @@ SoilPosterior fitSoil(std::span<const WheelReading> samples, const SoilMixture& 
   std::vector<SoilObjective> classes;
   for (const SoilClass& soil : prior)
     classes.emplace_back(soil, SoilObjective::Setting{options.noise, options.outlier_share, population, {}});
-  if (samples.size() > kFew) return fitManySamples(classes, samples, options);
-  std::vector<ClassFit> fits;
-  for (const SoilObjective& objective : classes) {
-    fits.push_back({objective, {}, findModeAfresh(objective, samples)});
-  }
-  return samplePosterior(fits, samples, options.draws);
+  const std::vector<ClassFit> fits = fitClasses(classes, samples, options.watch);
+  if (fits.empty()) return {};
+  SoilPosterior posterior = samplePosterior(fits, weighted(samples), options.draws);
+  posterior.misfit = misfitOf(fits, samples);
+  return posterior;
 }
 
 SoilPosterior fitSoil(const Wheel& wheel, std::span<const WheelSample> samples, const SoilMixture& prior,
@@ -384,12 +383,14 @@ void SoilFilter::add(const WheelReading& reading) {
   for (std::size_t k = 0; k < s.tracks.size(); ++k) {
     State::Track& track = s.tracks[k];
     if (full) {  // remove the oldest sample, keep its quadratic about the mode
-      track.before =
-          s.objective(k).expandWhole(track.mode.likelihood.at, std::span(s.window).first(1), track.before);
+      track.before = s.objective(k).expand(track.mode.likelihood.at, std::span(s.window).first(1),
+                                           track.before, SoilObjective::Gradient::Whole);
     }
     const auto kept = std::span(s.window).subspan(full ? 1 : 0);
-    track.mode = !full && s.count <= kFresh ? findModeAfresh(s.objective(k), kept)
-                                            : findMode(s.objective(k), kept, track.before, track.mode.x);
+    constexpr auto kQuick = SoilObjective::Gradient::GaussNewton;
+    track.mode = !full && s.count <= kFresh
+                     ? findModeAfresh(s.objective(k), kept, kQuick)
+                     : findMode(s.objective(k), kept, track.before, track.mode.x, kQuick);
   }
   if (full) s.window.erase(s.window.begin());
 }
@@ -400,26 +401,9 @@ SoilPosterior SoilFilter::posterior() const {
   std::vector<ClassFit> classes;
   for (std::size_t k = 0; k < s.tracks.size(); ++k)
     classes.push_back({s.objective(k), s.tracks[k].before, s.tracks[k].mode});
-  return samplePosterior(classes, s.window, s.options.fit.draws);
-}
-
-std::vector<double> SoilFilter::classProbabilities() const {
-  std::vector<double> p;
-  for (std::size_t k = 0; k < state_->tracks.size(); ++k) {
-    p.push_back(std::log(state_->prior[k].probability) + state_->tracks[k].mode.log_evidence);
-  }
-  const double most = *std::ranges::max_element(p);
-  double sum = 0.0;
-  for (double& value : p) sum += value = std::exp(value - most);
-  for (double& value : p) value /= sum;
-  return p;
-}
-
-ContactSoil SoilFilter::mode() const {
-  const auto p = classProbabilities();
-  const auto best = static_cast<std::size_t>(std::ranges::max_element(p) - p.begin());
-  return state_->prior[best].at(state_->count == 0 ? SoilVector(SoilVector::Constant(0.5))
-                                                   : state_->tracks[best].mode.likelihood.at);
+  SoilPosterior posterior = samplePosterior(classes, s.window, s.options.fit.draws);
+  posterior.misfit = misfitOf(classes, s.window);
+  return posterior;
 }
 
 }  // namespace talus::terramech

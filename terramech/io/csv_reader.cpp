@@ -3,9 +3,11 @@
 #include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <deque>
 #include <fstream>
+#include <limits>
 #include <new>
 #include <system_error>
 #include <utility>
@@ -50,6 +52,19 @@ bool parseNumber(std::string_view field, double& value) noexcept {
   if (field.starts_with('+')) field.remove_prefix(1);
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   return error == std::errc{} && end == field.data() + field.size();
+}
+
+bool allNumbers(const std::vector<std::string>& fields, std::vector<double>& numbers) {
+  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+  bool any = false;
+  numbers.clear();
+  for (const std::string& field : fields) {
+    double value = kMissing;
+    if (!field.empty() && !parseNumber(field, value)) return false;
+    any |= !field.empty();
+    numbers.push_back(std::isfinite(value) ? value : kMissing);
+  }
+  return any;
 }
 
 namespace {

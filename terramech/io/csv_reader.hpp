@@ -16,6 +16,10 @@ namespace talus::terramech {
 /// any locale. Returns false if the field is not a number.
 bool parseNumber(std::string_view field, double& value) noexcept;
 
+/// Parses all fields of a column; a field that is empty or not finite becomes NaN. Returns false if a field is not a
+/// number, or if all fields are empty; `numbers` is then unspecified.
+bool allNumbers(const std::vector<std::string>& fields, std::vector<double>& numbers);
+
 /// Returns true if a text is valid UTF-8 without NUL characters.
 bool isText(std::string_view text);
 

@@ -9,6 +9,7 @@
 #include <talus/common/limits.hpp>
 #include <talus/common/nearest_name.hpp>
 #include <talus/terramech/io/model_file.hpp>
+#include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
@@ -79,27 +80,20 @@ void readFit(const YamlFields& root, RefinedModel& model) {
 
 namespace {
 
-constexpr Channel kAll[] = {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce};
 constexpr const char* kColumn[] = {"drawbar_pull_N", "sinkage_m", "torque_Nm", "side_force_N"};
 constexpr const char* kRelative[] = {"drawbar_pull_relative", "sinkage_relative", "torque_relative",
                                      "side_force_relative"};
 
 void setDeviation(RefinedModel& model, const SoilPrior& prior) {
   const SoilDeviation& d = prior.deviation;
-  const std::pair<const char*, double> all[] = {{"cohesion_Pa", d.cohesion_Pa},
-                                                {"friction_angle_rad", d.friction_angle_rad},
-                                                {"sinkage_exponent", d.sinkage_exponent},
-                                                {"shear_modulus_m", d.shear_modulus_m},
-                                                {"c1", d.c1},
-                                                {"c2", d.c2},
-                                                {"density_kg_m3", d.density_kg_m3},
-                                                {"digging_exponent", d.digging_exponent},
-                                                {"side_bulldozing", d.side_bulldozing}};
-  for (const auto& [name, std] : all)
-    if (std > 0.0) model.soil_prior_std[name] = std;
+  for (const SoilParameter& p : soilParameters()) {
+    model.soil_prior_mean[p.name] = p.get(prior.mean);
+    for (const SoilField& field : soilFields())
+      if (field.value == p.field && d.*field.deviation > 0.0)
+        model.soil_prior_std[p.name] = d.*field.deviation;
+  }
   const double width = model.wheel.value_or(Wheel{}).width_m;
   const double stiffness = std::hypot(d.cohesive_modulus / width, d.frictional_modulus);
-  for (const SoilParameter& p : soilParameters()) model.soil_prior_mean[p.name] = p.get(prior.mean);
   if (stiffness > 0.0) model.soil_prior_std["log_stiffness"] = stiffness / sinkageModulus(prior.mean, width);
 }
 
@@ -168,11 +162,11 @@ SensorNoise readNoise(const YamlFields& f) {
 
 Channel readChannel(const YamlFields& f) {
   const std::string word = f.word("channel");
-  for (Channel c : kAll)
+  for (Channel c : kAllChannels)
     if (word == name(c)) return c;
-  f.refuse("channel", "'" + word + "' is not a channel",
-           std::string("one of ") + name(kAll[0]) + ", " + name(kAll[1]) + ", " + name(kAll[2]) + ", " +
-               name(kAll[3]));
+  f.refuse(
+      "channel", "'" + word + "' is not a channel",
+      "one of drawbar_pull_over_load, sinkage_over_radius, torque_over_load_radius, side_force_over_load");
 }
 
 Effect readEffect(const YamlFields& f) {
@@ -366,19 +360,8 @@ std::vector<double> readableCovariance(std::vector<double> covariance, std::size
 
 void writeSoil(Writer& w, const Soil& s, const std::string& indent = "") {
   w << indent << "soil:\n" << indent << "  name: " << quoted(s.name) << "\n";
-  const std::pair<const char*, double> fields[] = {{"cohesion_Pa", s.cohesion_Pa},
-                                                   {"friction_angle_rad", s.friction_angle_rad},
-                                                   {"sinkage_exponent", s.sinkage_exponent},
-                                                   {"cohesive_modulus", s.cohesive_modulus},
-                                                   {"frictional_modulus", s.frictional_modulus},
-                                                   {"shear_modulus_m", s.shear_modulus_m},
-                                                   {"c1", s.c1},
-                                                   {"c2", s.c2},
-                                                   {"density_kg_m3", s.density_kg_m3},
-                                                   {"slip_sinkage_exponent", s.slip_sinkage_exponent},
-                                                   {"digging_exponent", s.digging_exponent},
-                                                   {"side_bulldozing", s.side_bulldozing}};
-  for (const auto& [field, value] : fields) w << indent << "  " << field << ": " << value << "\n";
+  for (const SoilField& field : soilFields())
+    w << indent << "  " << field.name << ": " << s.*field.value << "\n";
 }
 
 void writeEffect(Writer& w, const Effect& e, const std::string& indent) {

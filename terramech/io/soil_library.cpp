@@ -139,6 +139,24 @@ void readWheels(const YamlFields& fields, Rover& rover) {
 
 }  // namespace
 
+std::span<const SoilField> soilFields() {
+  static constexpr SoilField kFields[] = {
+      {"cohesion_Pa", &Soil::cohesion_Pa, &SoilDeviation::cohesion_Pa, true},
+      {"friction_angle_rad", &Soil::friction_angle_rad, &SoilDeviation::friction_angle_rad, true},
+      {"sinkage_exponent", &Soil::sinkage_exponent, &SoilDeviation::sinkage_exponent, true},
+      {"cohesive_modulus", &Soil::cohesive_modulus, &SoilDeviation::cohesive_modulus},
+      {"frictional_modulus", &Soil::frictional_modulus, &SoilDeviation::frictional_modulus},
+      {"shear_modulus_m", &Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m, true},
+      {"c1", &Soil::c1, &SoilDeviation::c1},
+      {"c2", &Soil::c2, &SoilDeviation::c2},
+      {"density_kg_m3", &Soil::density_kg_m3, &SoilDeviation::density_kg_m3},
+      {"slip_sinkage_exponent", &Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent},
+      {"digging_exponent", &Soil::digging_exponent, &SoilDeviation::digging_exponent},
+      {"side_bulldozing", &Soil::side_bulldozing, &SoilDeviation::side_bulldozing},
+      {"rut_stiffness", &Soil::rut_stiffness, &SoilDeviation::rut_stiffness}};
+  return kFields;
+}
+
 SoilPrior readSoil(const YamlFields& fields) {
   const std::vector<std::string> known = namesOf(soilKeys());
   // For a file of another kind the message does not list unknown names; a misspelt field is listed.
@@ -148,37 +166,19 @@ SoilPrior readSoil(const YamlFields& fields) {
     fields.refuse("", "has no field of a soil", "name a file of soils (terramech/README.md)");
   fields.only(known);
   SoilPrior soil;
-  const Soil defaults;
-  const auto take = [&](double Soil::*value, double SoilDeviation::*deviation, const Estimate& stated) {
-    soil.mean.*value = stated.value;
-    soil.deviation.*deviation = stated.std;
-  };
   soil.mean.name = fields.word("name", "unnamed");
-  take(&Soil::cohesion_Pa, &SoilDeviation::cohesion_Pa, fields.stated("cohesion_Pa"));
-  take(&Soil::friction_angle_rad, &SoilDeviation::friction_angle_rad, fields.stated("friction_angle_rad"));
-  take(&Soil::sinkage_exponent, &SoilDeviation::sinkage_exponent, fields.stated("sinkage_exponent"));
-  take(&Soil::cohesive_modulus, &SoilDeviation::cohesive_modulus, fields.stated("cohesive_modulus", 0.0));
-  take(&Soil::frictional_modulus, &SoilDeviation::frictional_modulus,
-       fields.stated("frictional_modulus", 0.0));
-  take(&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m, fields.stated("shear_modulus_m"));
-  take(&Soil::c1, &SoilDeviation::c1, fields.stated("c1", defaults.c1));
-  take(&Soil::c2, &SoilDeviation::c2, fields.stated("c2", defaults.c2));
+  for (const SoilField& field : soilFields()) {
+    const Estimate stated =
+        field.required ? fields.stated(field.name) : fields.stated(field.name, soil.mean.*field.value);
+    soil.mean.*field.value = stated.value;
+    soil.deviation.*field.deviation = stated.std;
+  }
   // theta_m / theta_1 = c1 + c2 slip must be in [0, 1].
   if (soil.mean.c1 < 0.0 || soil.mean.c1 > 1.0)
     fields.refuse("c1", "c1 must be 0 to 1: the peak of the stress lies in the contact", "check it");
   if (std::abs(soil.mean.c2) > 1.0)
     fields.refuse("c2", "c2 must be -1 to 1: the peak of the stress lies in the contact", "check it");
-  take(&Soil::density_kg_m3, &SoilDeviation::density_kg_m3,
-       fields.stated("density_kg_m3", defaults.density_kg_m3));
-  take(&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent,
-       fields.stated("slip_sinkage_exponent", defaults.slip_sinkage_exponent));
-  take(&Soil::digging_exponent, &SoilDeviation::digging_exponent,
-       fields.stated("digging_exponent", defaults.digging_exponent));
-  take(&Soil::side_bulldozing, &SoilDeviation::side_bulldozing,
-       fields.stated("side_bulldozing", defaults.side_bulldozing));
-  take(&Soil::rut_stiffness, &SoilDeviation::rut_stiffness,
-       fields.stated("rut_stiffness", defaults.rut_stiffness));
-  soil.mean.test_gravity_m_s2 = fields.number("test_gravity_m_s2", defaults.test_gravity_m_s2);
+  soil.mean.test_gravity_m_s2 = fields.number("test_gravity_m_s2", soil.mean.test_gravity_m_s2);
   if (soil.mean.cohesive_modulus == 0.0 && soil.mean.frictional_modulus == 0.0)
     fields.refuse("", "lacks cohesive_modulus and frictional_modulus", "add at least one, above 0");
   try {

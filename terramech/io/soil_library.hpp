@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,17 @@
 #include <talus/terramech/estimate/soil_estimation.hpp>
 
 namespace talus::terramech {
+
+/// Number of a soil that a file may state with a standard deviation.
+struct SoilField {
+  const char* name;  ///< key in files
+  double Soil::*value;
+  double SoilDeviation::*deviation;
+  bool required = false;  ///< false: the default is that of Soil
+};
+
+/// Returns all numbers of a soil except test_gravity_m_s2.
+std::span<const SoilField> soilFields();
 
 /// Converts the option --prior of the program to the priors of each estimation method.
 

@@ -60,10 +60,6 @@ constexpr Rule kRules[] = {
 // the same limit.
 constexpr double kDust = 1e-15;
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// One column of the file while it is read.
 struct Column {
   std::string name;
@@ -78,8 +74,8 @@ struct Column {
 Column columnNamed(const std::string& name, const TelemetryOptions& options) {
   Column column;
   column.name = name;
-  column.known = contains(knownTelemetryColumns(), name) || contains(options.required, name);
-  column.required = contains(options.required, name);
+  column.required = std::ranges::count(options.required, name) > 0;
+  column.known = column.required || std::ranges::count(knownTelemetryColumns(), name) > 0;
   for (const Rule& rule : kRules)
     if (name == rule.column) column.rule = &rule;
   return column;
@@ -198,7 +194,8 @@ class Table {
     for (Column& column : columns_) {
       if (column.name.empty()) continue;
       if (column.known) telemetry.rejected_numbers.push_back({column.name, std::move(column.rejected)});
-      if (column.known || allNumbers(column))
+      const bool texts = column.name == "run" || column.name == "wheel";
+      if (column.known || (!texts && allNumbers(column.words, column.numbers)))
         telemetry.numbers.push_back({column.name, std::move(column.numbers)});
       else
         telemetry.words.push_back({column.name, std::move(column.words)});
@@ -221,21 +218,6 @@ class Table {
     if (radius <= 0.0 || !(values_[sinkage_] >= 2.0 * radius)) return "";
     return "sinkage_m = " + fmt::format("{:g}", values_[sinkage_]) + ", must be < the wheel's diameter, " +
            fmt::format("{:g}", 2.0 * radius);
-  }
-
-  /// Fills `numbers` from `words` if every non-empty field is a number and some field is not empty.
-  static bool allNumbers(Column& column) {
-    if (column.name == "run" || column.name == "wheel") return false;
-    bool any = false;
-    std::vector<double> numbers;
-    for (const auto& word : column.words) {
-      double value = kMissing;
-      if (!word.empty() && !parseNumber(word, value)) return false;
-      any |= !word.empty();
-      numbers.push_back(std::isfinite(value) ? value : kMissing);
-    }
-    if (any) column.numbers = std::move(numbers);
-    return any;
   }
 
   std::vector<Column> columns_;
@@ -278,7 +260,7 @@ void checkColumns(const std::vector<std::string>& header, const std::vector<std:
                   const std::string& where) {
   std::string missing;
   for (const auto& name : required)
-    if (!contains(header, name)) missing += (missing.empty() ? "" : ", ") + name;
+    if (std::ranges::count(header, name) == 0) missing += (missing.empty() ? "" : ", ") + name;
   if (missing.empty()) return;
   throw InputError(
       {.where = where + ":1",

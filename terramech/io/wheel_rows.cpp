@@ -74,6 +74,11 @@ std::string angleFault(const Telemetry& table, std::size_t row) {
       (*force)[row]);
 }
 
+[[noreturn]] void refuseAll(const std::string& source, const std::vector<RejectedRow>& rejected) {
+  throw InputError(
+      {fmt::format("{}:{}", source, rejected.front().line), "no usable row: " + rejected.front().reason, ""});
+}
+
 // Moves each row with a fault to the rejected rows; `faults` has one text per row.
 void leaveOut(Telemetry& t, const std::vector<std::string>& faults) {
   for (std::size_t row = 0; row < faults.size(); ++row) {
@@ -111,10 +116,7 @@ void leaveOutWithoutSlipAngle(Telemetry& telemetry) {
   for (std::size_t row = 0; row < telemetry.size(); ++row) faults.push_back(angleFault(telemetry, row));
   leaveOut(telemetry, faults);
   if (telemetry.size() > 0) return;
-  const RejectedRow& first = telemetry.rejected.front();
-  throw InputError({.where = fmt::format("{}:{}", telemetry.source, first.line),
-                    .reason = "no usable row: " + first.reason,
-                    .remedy = ""});
+  refuseAll(telemetry.source, telemetry.rejected);
 }
 
 std::vector<WheelReading> WheelRows::readings() const {
@@ -135,10 +137,8 @@ WheelRows readWheelRows(const TableFile& file, const WheelRowOptions& options, c
                  .samples = {},
                  .wheels = {},
                  .lines = {},
-                 .words = {},
                  .ignored = ignoredOf(table),
                  .rejected = table.rejected};
-  for (const auto& column : table.words) rows.words.push_back({.name = column.name, .values = {}});
   const auto* slip = table.find("slip");
   const auto* slip_angle = table.find("slip_angle_rad");
   for (std::size_t k = 0; k < table.size(); ++k) {
@@ -156,14 +156,10 @@ WheelRows readWheelRows(const TableFile& file, const WheelRowOptions& options, c
     rows.samples.push_back(sample);
     rows.wheels.push_back(wheels[k]);
     rows.lines.push_back(table.lines[k]);
-    for (std::size_t w = 0; w < table.words.size(); ++w)
-      rows.words[w].values.push_back(table.words[w].values[k]);
   }
   std::ranges::stable_sort(rows.rejected, {}, &RejectedRow::line);
   if (!rows.samples.empty()) return rows;
-  throw InputError({.where = fmt::format("{}:{}", rows.source, rows.rejected.front().line),
-                    .reason = fmt::format("no usable row: {}", rows.rejected.front().reason),
-                    .remedy = ""});
+  refuseAll(rows.source, rows.rejected);
 }
 
 namespace {

@@ -13,14 +13,13 @@ namespace talus::terramech {
 
 /// Rows of wheel telemetry that an estimator can use, and the rejected rows.
 struct WheelRows {
-  std::string source;                   ///< name of the file
-  Wheel wheel;                          ///< wheel of the first row; if one_wheel is true, of all rows
-  bool one_wheel = true;                ///< false: the rows contain wheels of several sizes
-  std::vector<WheelSample> samples;     ///< readings of the usable rows
-  std::vector<Wheel> wheels;            ///< wheel of each sample
-  std::vector<std::size_t> lines;       ///< line number of each sample in the file
-  std::vector<Telemetry::Words> words;  ///< text columns of the file, one value per sample
-  std::vector<std::string> ignored;     ///< names of numeric columns of the file that are not used
+  std::string source;                ///< name of the file
+  Wheel wheel;                       ///< wheel of the first row; if one_wheel is true, of all rows
+  bool one_wheel = true;             ///< false: the rows contain wheels of several sizes
+  std::vector<WheelSample> samples;  ///< readings of the usable rows
+  std::vector<Wheel> wheels;         ///< wheel of each sample
+  std::vector<std::size_t> lines;    ///< line number of each sample in the file
+  std::vector<std::string> ignored;  ///< names of numeric columns of the file that are not used
   /// Rows that the reader or the estimation method rejected, in the order of the file.
   std::vector<RejectedRow> rejected;
   /// Returns the samples with their wheels.

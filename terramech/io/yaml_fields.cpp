@@ -182,25 +182,6 @@ std::string wordOf(const YAML::Node& node, const std::string& where, const std::
   return word;
 }
 
-/// Returns true if a document marker separates content; a line of content never begins with a marker.
-bool holdsMoreDocuments(const std::string& yaml) {
-  std::istringstream lines(yaml);
-  bool content = false, ended = false;
-  for (std::string line; std::getline(lines, line);) {
-    const auto isMarker = [&](std::string_view marker) {
-      return line.starts_with(marker) &&
-             (line.size() == 3 || std::string_view(" \t\r").find(line[3]) != std::string_view::npos);
-    };
-    const bool begins = isMarker("---"), ends = isMarker("...");
-    const std::size_t first = line.find_first_not_of(" \t\r", begins || ends ? 3 : 0);
-    const bool has_text = first != std::string::npos && line[first] != '#' && line[first] != '%';
-    if (content && (begins || (ended && has_text))) return true;
-    content |= has_text;
-    ended |= content && ends;
-  }
-  return false;
-}
-
 }  // namespace
 
 YamlFields YamlFields::of(const YAML::Node& node, const std::string& origin, const std::string& what) {
@@ -248,10 +229,11 @@ YamlFields YamlFields::text(const std::string& yaml, const std::string& origin) 
                             std::count(yaml.begin(), yaml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),
          "holds a NUL byte", "save it as UTF-8");
   try {
-    if (holdsMoreDocuments(yaml)) fail(origin, "holds more than one YAML document", "keep one of them");
-    const YAML::Node root = YAML::Load(yaml);
-    if (root.IsNull()) fail(origin, "is empty", "write `name: value` lines");
-    return of(root, origin, "");
+    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
+    if (documents.size() > 1) fail(origin, "holds more than one YAML document", "keep one of them");
+    if (documents.empty() || documents.front().IsNull())
+      fail(origin, "is empty", "write `name: value` lines");
+    return of(documents.front(), origin, "");
   } catch (const YAML::Exception& e) {
     fail(origin + ":" + std::to_string(e.mark.line + 1), "not YAML: " + e.msg, "correct the syntax");
   }

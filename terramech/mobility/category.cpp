@@ -79,14 +79,6 @@ Category categorise(const WheelCondition& condition, const CategoryThresholds& t
 
 namespace {
 
-double below(double x) {
-  return 0.5 * std::erfc(-x / std::numbers::sqrt2);
-}
-
-double density(double x) {
-  return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
-}
-
 /// Limits of the middle one of the three bands of a quantity.
 struct Bands {
   double low, high;
@@ -137,7 +129,8 @@ double probability(const NormalRectangle& q) {
   for (int k = 0; k < panels; ++k)
     for (std::size_t i = 0; i < kRule.node.size(); ++i) {
       const double y = low + panel * (k + kRule.node[i]);
-      sum += kRule.weight[i] * density(y) * (below((q.x2 - rho * y) / s) - below((q.x1 - rho * y) / s));
+      sum += kRule.weight[i] * normalDensity(y) *
+             (normalProbability((q.x2 - rho * y) / s) - normalProbability((q.x1 - rho * y) / s));
     }
   return sum * panel;
 }
@@ -161,38 +154,6 @@ CategoryProbability categoryProbability(const ConditionEstimate& belief, const C
   const double total = sum[0] + sum[1] + sum[2];
   for (double& p : sum) p /= total;
   return sum;
-}
-
-TraversabilityPlane traversabilityPlane(const PullFromTorqueAndSinkage& pull,
-                                        const CategoryThresholds& thresholds, const PlaneSize& size) {
-  validate(thresholds);
-  const RangeCheck check{"traversability plane"};
-  check.within("columns", size.columns, {1.0, 1e4});
-  check.within("rows", size.rows, {1.0, 1e4});
-  check.above("max_torque", size.max_torque, 0.0);
-  check.above("max_sinkage", size.max_sinkage, 0.0);
-  TraversabilityPlane plane{size.max_torque, size.max_sinkage, size.columns, size.rows, {}};
-  for (int row = 0; row < plane.rows; ++row)
-    for (int column = 0; column < plane.columns; ++column) {
-      const double torque = plane.torqueAt(column), sinkage = plane.sinkageAt(row);
-      plane.category.push_back(categorise({.drawbar_pull_over_load = pull(torque, sinkage),
-                                           .sinkage_over_radius = sinkage,
-                                           .torque_over_load_radius = torque},
-                                          thresholds));
-    }
-  return plane;
-}
-
-double torqueForPull(const PullFromTorqueAndSinkage& pull, double pull_threshold, double sinkage_over_radius,
-                     double max_torque) {
-  double low = 0.0, high = max_torque;
-  const auto reaches = [&](double torque) { return pull(torque, sinkage_over_radius) >= pull_threshold; };
-  if (reaches(low) || !reaches(high)) return std::numeric_limits<double>::quiet_NaN();
-  for (int step = 0; step < 60; ++step) {
-    const double middle = 0.5 * (low + high);
-    (reaches(middle) ? high : low) = middle;
-  }
-  return high;
 }
 
 }  // namespace talus::terramech

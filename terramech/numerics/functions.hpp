@@ -51,6 +51,22 @@ inline double medianOf(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
+/// Weighted means and central moments of pairs (x, y), one pair at a time (Welford).
+struct PairMoments {
+  double weight = 0.0, x = 0.0, y = 0.0;  ///< sum of weights, and means
+  double xx = 0.0, xy = 0.0, yy = 0.0;    ///< weighted sums of products of deviations from the means
+
+  void add(double new_x, double new_y, double w = 1.0) {
+    const double dx = new_x - x, dy = new_y - y;
+    weight += w;
+    x += dx * w / weight;
+    y += dy * w / weight;
+    xx += w * dx * (new_x - x);
+    xy += w * dx * (new_y - y);
+    yy += w * dy * (new_y - y);
+  }
+};
+
 /// Minimum of a function: abscissa and function value.
 struct Minimum {
   double at;
@@ -75,6 +91,21 @@ Minimum globalMinimum(F&& f, double low, double high, int rungs = 64) {
   const Minimum refined{at, value};
   return refined.value < best.value ? refined : best;
 }
+
+/// Progress of work in an unknown number of rounds: each round counts as half of the remaining share.
+class RoundProgress {
+ public:
+  /// Returns the share of the work that is done at a share of the present round; a smaller share than before begins
+  /// the next round.
+  double at(double share) {
+    if (share > 0.0 && share < last_) left_ *= 0.5;
+    last_ = share > 0.0 ? share : last_;
+    return 1.0 - left_ * (1.0 - 0.5 * last_);
+  }
+
+ private:
+  double left_ = 1.0, last_ = 0.0;
+};
 
 /// Natural cubic spline through the points (knots, values), constant beyond the outermost knots. With one
 /// knot the spline is constant; without knots it is 0.

@@ -29,20 +29,10 @@ std::string widthsRefusal(const std::vector<PlateModulus>& plates) {
 void separateModuli(PressureSinkage& fit) {
   fit.refused = widthsRefusal(fit.plates);
   if (!fit.refused.empty()) return;
-  double mean_x = 0.0;
-  double mean_k = 0.0;
-  const auto n = static_cast<double>(fit.plates.size());
-  for (const PlateModulus& p : fit.plates)
-    mean_x += 1.0 / p.plate_width_m / n, mean_k += p.sinkage_modulus / n;
-  double xx = 0.0;
-  double xk = 0.0;
-  for (const PlateModulus& p : fit.plates) {
-    const double dx = 1.0 / p.plate_width_m - mean_x;
-    xx += dx * dx;
-    xk += dx * (p.sinkage_modulus - mean_k);
-  }
-  fit.cohesive_modulus = xk / xx;
-  fit.frictional_modulus = mean_k - xk / xx * mean_x;
+  PairMoments line;
+  for (const PlateModulus& p : fit.plates) line.add(1.0 / p.plate_width_m, p.sinkage_modulus);
+  fit.cohesive_modulus = line.xy / line.xx;
+  fit.frictional_modulus = line.y - line.xy / line.xx * line.x;
 }
 
 namespace {
@@ -58,45 +48,31 @@ MohrCoulombLine mobilisedLine(std::span<const ShearReading> readings, double mod
 
 }  // namespace
 
-void PressureSinkageFit::add(const PlateReading& reading) {
+PressureSinkage fitPressureSinkage(std::span<const PlateReading> readings) {
   const RangeCheck range("plate reading");
-  range.above("plate_width_m", reading.plate_width_m, 0.0);
-  range.above("sinkage_m", reading.sinkage_m, 0.0);
-  range.above("pressure_Pa", reading.pressure_Pa, 0.0);
-  auto plate = std::ranges::find(plates_, reading.plate_width_m, &Plate::width_m);
-  if (plate == plates_.end()) plate = plates_.insert(plates_.end(), Plate{.width_m = reading.plate_width_m});
-  const double w = reading.pressure_Pa * reading.pressure_Pa;
-  const double x = std::log(reading.sinkage_m);
-  const double y = std::log(reading.pressure_Pa);
-  const double dx = x - plate->x;
-  const double dy = y - plate->y;
-  plate->weight += w;
-  plate->x += dx * w / plate->weight;
-  plate->y += dy * w / plate->weight;
-  plate->xx += w * dx * (x - plate->x);
-  plate->xy += w * dx * (y - plate->y);
-  plate->yy += w * dy * (y - plate->y);
-  ++count_;
-}
-
-PressureSinkage PressureSinkageFit::estimate() const {
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
-  double weight = 0.0;
-  for (const Plate& p : plates_) xx += p.xx, xy += p.xy, yy += p.yy, weight += p.weight;
-  if (!(xx > 0.0))
+  std::vector<std::pair<double, PairMoments>> plates;  // width, and moments of ln z and ln sigma
+  for (const PlateReading& r : readings) {
+    range.above("plate_width_m", r.plate_width_m, 0.0);
+    range.above("sinkage_m", r.sinkage_m, 0.0);
+    range.above("pressure_Pa", r.pressure_Pa, 0.0);
+    auto plate = std::ranges::find(plates, r.plate_width_m, &std::pair<double, PairMoments>::first);
+    if (plate == plates.end()) plate = plates.insert(plates.end(), {r.plate_width_m, {}});
+    plate->second.add(std::log(r.sinkage_m), std::log(r.pressure_Pa), squared(r.pressure_Pa));
+  }
+  PairMoments sum;
+  for (const auto& [width_m, m] : plates)
+    sum.xx += m.xx, sum.xy += m.xy, sum.yy += m.yy, sum.weight += m.weight;
+  if (!(sum.xx > 0.0))
     throw std::domain_error("pressure-sinkage: n is identifiable only with two depths per plate");
   PressureSinkage fit;
-  fit.sinkage_exponent = xy / xx;
-  for (const Plate& p : plates_) {
+  fit.sinkage_exponent = sum.xy / sum.xx;
+  for (const auto& [width_m, m] : plates)
     fit.plates.push_back(
-        {.plate_width_m = p.width_m, .sinkage_modulus = std::exp(p.y - fit.sinkage_exponent * p.x)});
-  }
-  const double left = std::max(0.0, yy - fit.sinkage_exponent * xy);
-  fit.residual_std = std::sqrt(left / weight);
-  const double free = static_cast<double>(count_) - static_cast<double>(plates_.size()) - 1.0;
-  fit.exponent_std = std::sqrt(left / std::max(free, 1.0) / xx);
+        {.plate_width_m = width_m, .sinkage_modulus = std::exp(m.y - fit.sinkage_exponent * m.x)});
+  const double left = std::max(0.0, sum.yy - fit.sinkage_exponent * sum.xy);
+  fit.residual_std = std::sqrt(left / sum.weight);
+  const double free = static_cast<double>(readings.size()) - static_cast<double>(plates.size()) - 1.0;
+  fit.exponent_std = std::sqrt(left / std::max(free, 1.0) / sum.xx);
   separateModuli(fit);
   return fit;
 }
@@ -118,17 +94,15 @@ struct FittedTrial {
 };
 
 std::optional<FittedTrial> fitted(const PlateTrial& trial) {
-  PressureSinkageFit fitter;
   FittedTrial f;
   for (const PlateReading& r : trial.readings) {
-    fitter.add(r);
     const double w = r.pressure_Pa * r.pressure_Pa;
     f.weight += w;
     f.log_depth += w * std::log(r.sinkage_m);
   }
   f.log_depth /= f.weight;
   try {
-    f.fit = fitter.estimate();
+    f.fit = fitPressureSinkage(trial.readings);
   } catch (const std::domain_error&) {
     return {};
   }

@@ -38,32 +38,13 @@ struct PressureSinkage {
   std::string refused;        ///< reason why k_c and k_phi are empty; otherwise empty
 };
 
-/// Recursive fit of k for each plate size and of the common exponent n. The fit minimises the squares of
+/// Returns the fit of k for each plate size and of the common exponent n, which minimises the squares of
 /// ln(sigma) with weights sigma^2 (wong_1980):
 ///     minimise sum sigma^2 (ln sigma - ln k_b - n ln z)^2
-/// k_c and k_phi follow from a line of k against 1/b. The memory grows only with the number of plate sizes.
-class PressureSinkageFit {
- public:
-  /// Adds a reading. Throws std::invalid_argument unless plate width, sinkage and pressure are > 0.
-  void add(const PlateReading& reading);
-
-  /// Returns the fitted parameters. Throws std::domain_error if there is no plate size with readings at two
-  /// depths, because n is then undetermined.
-  PressureSinkage estimate() const;
-
- private:
-  struct Plate {  // one plate size: weighted means and central moments of x = ln z and y = ln sigma
-    double width_m = 0.0;
-    double weight = 0.0;
-    double x = 0.0;
-    double y = 0.0;
-    double xx = 0.0;
-    double xy = 0.0;
-    double yy = 0.0;
-  };
-  std::vector<Plate> plates_;
-  std::size_t count_ = 0;
-};
+/// k_c and k_phi follow from a line of k against 1/b. Throws std::invalid_argument unless plate width, sinkage and
+/// pressure are > 0, and std::domain_error if there is no plate size with readings at two depths, because n is then
+/// undetermined.
+PressureSinkage fitPressureSinkage(std::span<const PlateReading> readings);
 
 /// Sets k_c and k_phi of a fit by a line of k against 1/b through its plate sizes, or sets
 /// PressureSinkage::refused.

@@ -30,42 +30,36 @@ double ShearStrength::frictionAngle_rad() const {
 
 void MohrCoulombLine::add(StressPair pair, double weight) {
   ++count_;
-  weight_ += weight;
-  const double dx = pair.normal_Pa - mean_normal_;
-  const double dy = pair.shear_Pa - mean_shear_;
-  mean_normal_ += dx * weight / weight_;
-  mean_shear_ += dy * weight / weight_;
-  normal_normal_ += weight * dx * (pair.normal_Pa - mean_normal_);
-  normal_shear_ += weight * dx * (pair.shear_Pa - mean_shear_);
-  shear_shear_ += weight * dy * (pair.shear_Pa - mean_shear_);
+  moments_.add(pair.normal_Pa, pair.shear_Pa, weight);
 }
 
 double MohrCoulombLine::relativeResidual() const {
-  if (count_ < 3 || !(normal_normal_ > 0.0)) return 0.0;
-  const double squares = shear_shear_ - normal_shear_ * normal_shear_ / normal_normal_;
-  return std::sqrt(std::max(0.0, squares) / static_cast<double>(count_));
+  const PairMoments& m = moments_;
+  if (count_ < 3 || !(m.xx > 0.0)) return 0.0;
+  return std::sqrt(std::max(0.0, m.yy - m.xy * m.xy / m.xx) / static_cast<double>(count_));
 }
 
 ShearStrength MohrCoulombLine::estimate() const {
   if (count_ < 2)
     throw std::domain_error("cohesion and friction: at least two samples are required, got " +
                             std::to_string(count_));
-  if (!(normal_normal_ > 0.0)) {
+  const PairMoments& m = moments_;
+  if (!(m.xx > 0.0)) {
     throw std::domain_error(
         "cohesion and friction: all samples have the same normal stress; vary load or slip");
   }
   ShearStrength fit;
   fit.samples = count_;
-  fit.tan_friction = normal_shear_ / normal_normal_;
-  fit.cohesion_Pa = mean_shear_ - fit.tan_friction * mean_normal_;
-  const double squares = std::max(0.0, shear_shear_ - fit.tan_friction * normal_shear_);
+  fit.tan_friction = m.xy / m.xx;
+  fit.cohesion_Pa = m.y - fit.tan_friction * m.x;
+  const double squares = std::max(0.0, m.yy - fit.tan_friction * m.xy);
   const double variance =
       count_ > 2 ? squares / (static_cast<double>(count_) - 2.0) : std::numeric_limits<double>::quiet_NaN();
-  fit.residual_std_Pa = std::sqrt(variance * static_cast<double>(count_) / weight_);
-  const double slope_variance = variance / normal_normal_;
-  fit.covariance << variance / weight_ + slope_variance * mean_normal_ * mean_normal_,
-      -slope_variance * mean_normal_, -slope_variance * mean_normal_, slope_variance;
-  fit.condition = scaledCondition(mean_normal_, normal_normal_ / weight_);
+  fit.residual_std_Pa = std::sqrt(variance * static_cast<double>(count_) / m.weight);
+  const double slope_variance = variance / m.xx;
+  fit.covariance << variance / m.weight + slope_variance * m.x * m.x, -slope_variance * m.x,
+      -slope_variance * m.x, slope_variance;
+  fit.condition = scaledCondition(m.x, m.xx / m.weight);
   fit.unseen = unseenStrength(fit);
   return fit;
 }
@@ -127,18 +121,6 @@ LinearOffsetCoefficients linearOffset(const Wheel& wheel, const WheelSample& sam
   return {.m1 = -offsetLoad(m) * b / (m.peak_cos * share),
           .m3_Pa = triangle.normal_Pa / share,
           .m4_Pa = triangle.shear_Pa / share};
-}
-
-LinearOffsetStresses linearOffsetStresses(const Wheel& wheel, const WheelSample& sample,
-                                          const ShearSoil& soil) {
-  const LinearStressMoments m(entryAngle_rad(wheel, sample.sinkage_m));
-  const double area = wheel.radius_m * wheel.width_m;
-  LinearOffsetStresses s;
-  s.tau_offset_Pa = soil.cohesion_Pa * mobilisation(wheel, sample, soil.shear_modulus_m).bottom;
-  s.tau_m_Pa = trianglePeaks(wheel, sample).shear_Pa - 0.5 * s.tau_offset_Pa;
-  s.sigma_m_Pa =
-      (sample.load_N / area - m.peak_sin * s.tau_m_Pa - m.offset_sin * s.tau_offset_Pa) / m.peak_cos;
-  return s;
 }
 
 }  // namespace talus::terramech

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 
@@ -59,12 +60,7 @@ class MohrCoulombLine {
 
  private:
   std::size_t count_ = 0;
-  double weight_ = 0.0;
-  double mean_normal_ = 0.0;
-  double mean_shear_ = 0.0;
-  double normal_normal_ = 0.0;  // sum w (x - mean x)^2
-  double normal_shear_ = 0.0;
-  double shear_shear_ = 0.0;
+  PairMoments moments_;  // of normal and shear stress
 };
 
 /// Returns the entries of ShearStrength::unseen for a fit. A parameter is undetermined if the condition
@@ -124,26 +120,5 @@ struct LinearOffsetCoefficients {
 /// Returns M1, M3 and M4 of a sample for a given shear modulus K. Throws std::invalid_argument unless 0 <
 /// sinkage < 2 r and K > 0, and std::domain_error if no shear is mobilised.
 LinearOffsetCoefficients linearOffset(const Wheel& wheel, const WheelSample& sample, double shear_modulus_m);
-
-/// Stresses of the linear-offset distribution along the rim (thesis Eq. 2.1).
-struct LinearOffsetStresses {
-  double sigma_m_Pa = 0.0;     ///< peak normal stress sigma_m
-  double tau_m_Pa = 0.0;       ///< peak shear stress tau_m
-  double tau_offset_Pa = 0.0;  ///< shear offset at the bottom of the wheel
-};
-
-/// Soil parameters that linearOffsetStresses() requires.
-struct ShearSoil {
-  double cohesion_Pa = 0.0;      ///< cohesion c
-  double shear_modulus_m = 0.0;  ///< shear deformation modulus K
-};
-
-/// Returns the stresses that carry the load W and torque T of a sample for a known cohesion c (thesis Eqs.
-/// 2.2, 2.3 corrected, 2.6). h = theta_1/2, P and Q are those of the linear stress law:
-///     tau_offset = c B
-///     T = r^2 b theta_1 (tau_m/2 + tau_offset/4)
-///     W = r b (sigma_m P/h + tau_m Q/h + tau_offset (1 - sin(h)/h))
-LinearOffsetStresses linearOffsetStresses(const Wheel& wheel, const WheelSample& sample,
-                                          const ShearSoil& soil);
 
 }  // namespace talus::terramech

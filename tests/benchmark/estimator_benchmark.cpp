@@ -51,7 +51,7 @@ void filter(benchmark::State& state) {
   for (auto _ : state) {
     k = (k + 1) % samples().size();
     soil.add(samples()[k]);
-    benchmark::DoNotOptimize(soil.mode());
+    benchmark::DoNotOptimize(soil.samples());
   }
 }
 BENCHMARK(filter);

@@ -2,7 +2,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <error_minimisation.hpp>
 #include <fmt/format.h>
+#include <linear_offset_stresses.hpp>
 
 #include <talus/common/common.hpp>
 #include <talus/terramech/contact/rim_contact.hpp>
@@ -87,8 +89,7 @@ ThesisFigure stresses() {
     const ContactSoil soil = middle(soil_class);
     const WheelSample s = drive(soil, 80.0, 0.5);
     const auto exact = stressDistribution(soilOf(soil), kThesisWheel, {.load_N = 80.0, .slip = 0.5});
-    const auto m = linearOffsetStresses(
-        kThesisWheel, s, {.cohesion_Pa = soil.cohesion_Pa, .shear_modulus_m = soil.shear_modulus_m});
+    const auto m = linearOffsetStresses(kThesisWheel, s, soil.cohesion_Pa, soil.shear_modulus_m);
     std::vector<Series> shown = lines({"normal", "shear", "normal, linear", "shear, linear-offset"});
     shown[2].dashed = shown[3].dashed = true;
     const double theta_1 = exact.back().angle_rad;
@@ -184,12 +185,14 @@ ThesisFigure modulusErrors(std::uint64_t seed) {
       const ModulusEstimate least = modulusByErrorMinimisation(kThesisWheel, r.samples);
       inside += !least.at_bound;
       d1.push_back(ratio(least));
-      joint.push_back(ratio(modulusJointly(kThesisWheel, r.samples)));
-      try {
-        printed.push_back(ratio(modulusByEffectiveTorque(kThesisWheel, r.samples)));
-        solved.push_back(ratio(modulusByTorqueRatio(kThesisWheel, r.samples)));
-      } catch (const std::domain_error&) {  // no sample of less torque: no answer
-      }
+      const auto by = [&](ModulusCriterion criterion) {
+        ShearModulusGrid grid(kThesisWheel, {.criterion = criterion});
+        for (const WheelSample& s : r.samples) grid.add(s);
+        return ratio(grid.modulus());
+      };
+      joint.push_back(by(ModulusCriterion::Joint));
+      printed.push_back(by(ModulusCriterion::EffectiveTorque));
+      solved.push_back(by(ModulusCriterion::TorqueRatio));
     }
     found += fmt::format(
         "; at {:.0f} % noise D.1 {:.2f}, D.8 as printed {:.2f}, D.8 with the ratio solved {:.2f}, joint "

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <fmt/format.h>
 #include <thesis_runs.hpp>
 
@@ -101,7 +102,8 @@ ThesisFigure sameReadings(const std::vector<State>& all) {
 }
 
 ThesisFigure dimensionless(const std::vector<State>& all) {
-  PullPlaneFitter fitter;
+  Eigen::MatrixXd readings(std::ssize(all), 3);
+  Eigen::VectorXd pulls(std::ssize(all));
   double mean = 0.0, square = 0.0, ours = 0.0;
   std::vector<Series> clouds;
   for (const double z : {0.1, 0.15, 0.2, 0.25}) {
@@ -114,25 +116,27 @@ ThesisFigure dimensionless(const std::vector<State>& all) {
     if (!cloud.x.empty()) clouds.push_back(cloud);
   }
   for (const State& s : all) {
-    fitter.add(kThesisWheel, s.sample, s.pull);
+    const auto row = &s - all.data();
+    readings.row(row) << torqueShare(s), sinkageShare(s), 1.0;
+    pulls[row] = s.pull;
     const double error = kThesisPlane.at(kThesisWheel, s.sample) - s.pull;
     mean += error, square += error * error;
     ours += std::pow(pullOverLoad(kThesisWheel, s.sample).value - s.pull, 2);
   }
   const auto n = static_cast<double>(all.size());
-  const PullPlaneFit fit = fitter.estimate();
+  const Eigen::Vector3d plane = readings.colPivHouseholderQr().solve(pulls);  // Eqs. 3.16 to 3.19
+  const double residual = (pulls - readings * plane).norm() / std::sqrt(n - 3.0);
   mean /= n;
-  const auto& [c1, c2, c3] = fit.plane;
-  const bool alike = std::abs(c1 - 1.0) < 0.05 && std::abs(c2 + 1.0) < 0.05 && std::abs(c3 + 0.1) < 0.02 &&
-                     fit.residual_std < 0.03;
+  const double c1 = plane[0], c2 = plane[1], c3 = plane[2];
+  const bool alike =
+      std::abs(c1 - 1.0) < 0.05 && std::abs(c2 + 1.0) < 0.05 && std::abs(c3 + 0.1) < 0.02 && residual < 0.03;
   return {
       "3.6",
       "Drawbar pull over dimensionless readings",
       "plane [1, -1, -0.1], error of mean 0.001 and standard deviation 0.03",
       fmt::format("plane [{:.2f}, {:.2f}, {:.2f}], residual {:.3f}; Eq. 3.21 as printed: mean {:.3f}, "
                   "standard deviation {:.3f}; single force (ours) rms {:.4f}",
-                  c1, c2, c3, fit.residual_std, mean, std::sqrt(square / n - mean * mean),
-                  std::sqrt(ours / n)),
+                  c1, c2, c3, residual, mean, std::sqrt(square / n - mean * mean), std::sqrt(ours / n)),
       verdictOf(alike, "not reproduced", ", but for the bias of Eq. 3.21"),
       {{.title = "500 soils", .x = {.label = "T/(rW) [-]"}, .y = {.label = "DP/W [-]"}, .series = clouds}}};
 }

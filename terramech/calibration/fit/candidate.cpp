@@ -5,6 +5,7 @@
 
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -31,17 +32,10 @@ Extent extentOf(const Eigen::VectorXd& x) {
 /// both speeds cannot be distinguished; the rate forms then use the speed over ground.
 bool isTwin(const Trial& trial, const std::string& column) {
   if (column != "rim_speed_mps") return false;
-  double n = 0.0, mean = 0.0, square = 0.0;
-  for (const WheelState& s : trial.states) {
-    const double ratio = s.speed_mps / s.rim_speed_mps;
-    if (!std::isfinite(ratio)) continue;
-    n += 1.0;
-    mean += ratio;
-    square += ratio * ratio;
-  }
-  if (2.0 * n < trial.rows()) return false;
-  mean /= n;
-  return square / n - mean * mean < 1e-3 * mean * mean;
+  PairMoments m;
+  for (const WheelState& s : trial.states)
+    if (const double ratio = s.speed_mps / s.rim_speed_mps; std::isfinite(ratio)) m.add(ratio, 0.0);
+  return 2.0 * m.weight >= trial.rows() && m.xx < 1e-3 * m.x * m.x * m.weight;
 }
 
 class Collector {
@@ -249,7 +243,7 @@ Effect flatCurve(const char* name, const std::string& covariate, Channel channel
 std::vector<Effect> curvesOf(const Trial& trial, const std::string& covariate,
                              const std::vector<double>& knots) {
   std::vector<Effect> all;
-  for (const Channel channel : {Channel::DrawbarPull, Channel::Sinkage, Channel::Torque, Channel::SideForce})
+  for (const Channel channel : kAllChannels)
     if (trial.has(channel)) all.push_back(flatCurve("empirical", covariate, channel, knots));
   if (covariate == "slip_angle_rad") return all;
   all.push_back(flatCurve("empirical_stiffness", covariate, Channel::Sinkage, knots));

@@ -14,33 +14,6 @@
 namespace talus::terramech {
 namespace {
 
-using Cost = std::function<double(const std::vector<double>&)>;
-
-double costAt(const std::vector<double>& x, std::vector<double>&, void* cost) {
-  return (*static_cast<const Cost*>(cost))(x);
-}
-
-}  // namespace
-
-std::vector<double> nelderMead(const Cost& cost, const std::vector<double>& start,
-                               const NelderMeadOptions& options) {
-  if (start.empty()) return start;
-  nlopt::opt search(nlopt::LN_NELDERMEAD, static_cast<unsigned>(start.size()));
-  search.set_min_objective(costAt, const_cast<Cost*>(&cost));
-  search.set_initial_step(options.step);
-  search.set_maxeval(options.evaluations);
-  search.set_ftol_abs(options.tolerance);
-  std::vector<double> x = start;
-  double value = 0.0;
-  try {
-    search.optimize(x, value);
-  } catch (const nlopt::roundoff_limited&) {  // no step improves x within rounding
-  }
-  return x;
-}
-
-namespace {
-
 /// Standard deviation of the logarithm of a stated error.
 constexpr double kStatedSpread = 0.25;
 
@@ -51,17 +24,10 @@ struct Scale {
 };
 
 std::optional<double> statedOf(const StatedSensors& stated, Channel channel) {
-  switch (channel) {
-    case Channel::DrawbarPull:
-      return stated.drawbar_pull_N;
-    case Channel::Sinkage:
-      return stated.sinkage_m;
-    case Channel::Torque:
-      return stated.torque_Nm;
-    case Channel::SideForce:
-      return stated.side_force_N;
-  }
-  return {};
+  constexpr std::optional<double> StatedSensors::*kFields[] = {
+      &StatedSensors::drawbar_pull_N, &StatedSensors::sinkage_m, &StatedSensors::torque_Nm,
+      &StatedSensors::side_force_N};
+  return stated.*kFields[static_cast<std::size_t>(channel)];
 }
 
 std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, const Eigen::MatrixXd& level,
@@ -223,14 +189,27 @@ SensorNoise fitNoise(const Trial& trial, const Eigen::MatrixXd& residual, const 
   const auto set = [&](const std::vector<double>& log_ratio) {
     for (std::size_t k = 0; k < all.size(); ++k) *all[k].target = all[k].median * std::exp(log_ratio[k]);
   };
-  const auto cost = [&](const std::vector<double>& log_ratio) {
+  using Cost = std::function<double(const std::vector<double>&)>;
+  Cost cost = [&](const std::vector<double>& log_ratio) {
     set(log_ratio);
     double sum = 0.0;
     for (std::size_t k = 0; k < all.size(); ++k) sum += 0.5 * squared(log_ratio[k] / all[k].spread);
     return sum - logLikelihood(trial, residual, level, slopes, noise);  // (T7)
   };
-  set(nelderMead(cost, std::vector<double>(all.size(), 0.0),
-                 {.step = 0.7, .evaluations = 900, .tolerance = 1e-3}));
+  nlopt::opt search(nlopt::LN_NELDERMEAD, static_cast<unsigned>(all.size()));  // nelder_mead_1965
+  search.set_min_objective(
+      [](const std::vector<double>& x, std::vector<double>&, void* f) { return (*static_cast<Cost*>(f))(x); },
+      &cost);
+  search.set_initial_step(0.7);
+  search.set_maxeval(900);
+  search.set_ftol_abs(1e-3);
+  std::vector<double> best(all.size(), 0.0);
+  try {
+    double value = 0.0;
+    search.optimize(best, value);
+  } catch (const nlopt::roundoff_limited&) {  // no step improves within rounding
+  }
+  set(best);
   return noise;
 }
 

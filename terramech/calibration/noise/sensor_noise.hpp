@@ -12,18 +12,6 @@
 
 namespace talus::terramech {
 
-/// Initial step and stopping criteria of the simplex method.
-struct NelderMeadOptions {
-  double step = 0.5;        ///< initial edge length of the simplex in every coordinate
-  int evaluations = 1000;   ///< greatest number of function evaluations
-  double tolerance = 1e-6;  ///< the search stops if the function values over the simplex differ by less
-};
-
-/// Returns the minimum of `cost` that the simplex method finds from `start` (nelder_mead_1965). The method
-/// suits few coordinates of similar scale.
-std::vector<double> nelderMead(const std::function<double(const std::vector<double>&)>& cost,
-                               const std::vector<double>& start, const NelderMeadOptions& options);
-
 /// Returns the maximum a posteriori standard deviations of the sensors, including those of slip and load. The
 /// smooth dependence of the residuals on covariates is removed first, so that a missing effect does not
 /// increase the noise. Errors of slip and load are deviations that change all channels together along

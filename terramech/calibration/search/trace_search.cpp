@@ -337,10 +337,6 @@ std::vector<double> gainsOf(const RefinedModel& base, const Trial& trial, const 
   return gain;
 }
 
-bool isIn(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 }  // namespace
 
 std::vector<char> rowSample(const Trial& trial, int most, std::uint64_t seed) {
@@ -379,7 +375,9 @@ Trial screenColumns(const RefinedModel& base, const Trial& trial, const TraceOpt
     else if (gain[order[k]] <= by_chance)  // (T40)
       screened.chance.push_back(column);
   }
-  const auto isDropped = [&](const std::string& name) { return isIn(screened.dropped, name); };
+  const auto isDropped = [&](const std::string& name) {
+    return std::ranges::count(screened.dropped, name) > 0;
+  };
   std::erase_if(screened.covariates, isDropped);
   std::erase_if(screened.groupings, isDropped);
   for (WheelState& s : screened.states) {

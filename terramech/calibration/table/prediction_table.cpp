@@ -14,10 +14,6 @@ bool isPrediction(const std::string& name) {
   return name.starts_with("predicted_");
 }
 
-bool alwaysWords(const std::string& name) {
-  return name == "run" || name == "wheel";
-}
-
 struct Rows {
   std::vector<std::string> header;
   std::vector<CsvRow> rows;
@@ -34,18 +30,6 @@ Rows readRows(const TableFile& table, const std::stop_token& stop) {
   return all;
 }
 
-/// Reads a column as numbers; false if a field contains text.
-bool numbersOf(const Rows& all, std::size_t column, std::vector<double>& values) {
-  bool any = false;
-  for (const CsvRow& row : all.rows) {
-    double value = WheelState::kUnknown;
-    if (!row.fields[column].empty() && !parseNumber(row.fields[column], value)) return false;
-    any |= !row.fields[column].empty();
-    values.push_back(std::isfinite(value) ? value : WheelState::kUnknown);
-  }
-  return any;
-}
-
 /// Telemetry with the conditions only, without measured answers.
 Telemetry conditionsOf(const Rows& all, const std::string& source) {
   Telemetry t;
@@ -53,15 +37,16 @@ Telemetry conditionsOf(const Rows& all, const std::string& source) {
   for (std::size_t k = 0; k < all.header.size(); ++k) {
     const std::string& name = all.header[k];
     if (name.empty() || isAnswer(name) || isPrediction(name)) continue;
+    std::vector<std::string> fields;
+    for (const CsvRow& row : all.rows) fields.push_back(row.fields[k]);
     std::vector<double> numbers;
-    const auto& known = knownTelemetryColumns();
-    const bool must = std::find(known.begin(), known.end(), name) != known.end();
-    if (!alwaysWords(name) && (numbersOf(all, k, numbers) || must)) {
+    const bool known = std::ranges::count(knownTelemetryColumns(), name) > 0,
+               texts = name == "run" || name == "wheel";
+    if (!texts && (allNumbers(fields, numbers) || known)) {
       numbers.resize(all.rows.size(), WheelState::kUnknown);
       t.numbers.push_back({name, numbers});
     } else {
-      t.words.push_back({name, {}});
-      for (const CsvRow& row : all.rows) t.words.back().values.push_back(row.fields[k]);
+      t.words.push_back({name, std::move(fields)});
     }
   }
   for (const CsvRow& row : all.rows) t.lines.push_back(row.line);

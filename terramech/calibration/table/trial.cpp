@@ -8,46 +8,28 @@
 #include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
 namespace {
 
-bool isStateColumn(const std::string& name) {
-  const auto& known = stateColumns();
-  return std::find(known.begin(), known.end(), name) != known.end();
-}
-
 double numberAt(const std::vector<double>* column, std::size_t row, double otherwise) {
   return column && std::isfinite((*column)[row]) ? (*column)[row] : otherwise;
-}
-
-Wheel wheelAt(const Telemetry& t, std::size_t row, const RefinedModel& model) {
-  Wheel wheel = model.wheel.value_or(Wheel{});
-  wheel.radius_m = numberAt(t.find("wheel_radius_m"), row, wheel.radius_m);
-  wheel.width_m = numberAt(t.find("wheel_width_m"), row, wheel.width_m);
-  wheel.grouser_height_m = numberAt(t.find("grouser_height_m"), row, wheel.grouser_height_m);
-  wheel.grouser_count = static_cast<int>(numberAt(t.find("grouser_count"), row, wheel.grouser_count));
-  return wheel;
 }
 
 WheelState stateAt(const Telemetry& t, std::size_t row, const RefinedModel& model) {
   constexpr double kUnknown = WheelState::kUnknown;
   WheelState s;
-  s.wheel = wheelAt(t, row, model);
+  s.wheel = model.wheel.value_or(Wheel{});
   s.gravity_m_s2 = model.gravity_m_s2;
-  s.load_N = numberAt(t.find("load_N"), row, kUnknown);
-  s.slip = numberAt(t.find("slip"), row, kUnknown);
-  s.slip_angle_rad = numberAt(t.find("slip_angle_rad"), row, 0.0);
-  s.speed_mps = numberAt(t.find("speed_mps"), row, kUnknown);
-  s.rim_speed_mps = numberAt(t.find("rim_speed_mps"), row, kUnknown);
-  s.time_s = numberAt(t.find("time_s"), row, kUnknown);
-  s.pass_index = numberAt(t.find("pass_index"), row, kUnknown);
-  s.slope_rad = numberAt(t.find("slope_rad"), row, kUnknown);
+  s.load_N = s.slip = kUnknown;
+  for (const std::string& name : stateColumns())
+    s.setCovariate(name, numberAt(t.find(name), row, s.covariate(name)));
   s.measured_torque_Nm = numberAt(t.find("torque_Nm"), row, kUnknown);
   s.measured_sinkage_m = numberAt(t.find("sinkage_m"), row, kUnknown);
   for (const auto& column : t.numbers)
-    if (!isStateColumn(column.name) && !isAnswer(column.name) && !column.name.starts_with("predicted_"))
+    if (isOwnColumn(column.name) && !isAnswer(column.name) && !column.name.starts_with("predicted_"))
       s.extra.emplace_back(column.name, column.values[row]);
   for (const auto& column : t.words)
     if (!column.name.starts_with("predicted_")) s.group.emplace_back(column.name, column.values[row]);
@@ -156,20 +138,14 @@ bool repeatsReading(const Trial& trial, const std::string& column) {
   constexpr double kOfRounding = 1e-6;  // greatest 1 - r^2 of a column of rounded numbers
   constexpr int kFewest = 6;
   for (int c = 0; c < kChannels; ++c) {
-    double n = 0.0, mx = 0.0, my = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+    PairMoments m;
     for (int row = 0; row < trial.rows(); ++row) {
       const double x = trial.states[static_cast<std::size_t>(row)].covariate(column),
                    y = trial.measured(row, c) * trial.denominator(row, static_cast<Channel>(c));
-      if (!std::isfinite(x) || !std::isfinite(y)) continue;
-      n += 1.0;
-      const double dx = x - mx, dy = y - my;
-      mx += dx / n;
-      my += dy / n;
-      xx += dx * (x - mx);
-      yy += dy * (y - my);
-      xy += dx * (y - my);
+      if (std::isfinite(x) && std::isfinite(y)) m.add(x, y);
     }
-    if (n >= kFewest && xx > 0.0 && yy > 0.0 && 1.0 - xy * xy / (xx * yy) < kOfRounding) return true;
+    if (m.weight >= kFewest && m.xx > 0.0 && m.yy > 0.0 && 1.0 - m.xy * m.xy / (m.xx * m.yy) < kOfRounding)
+      return true;
   }
   return false;
 }
@@ -270,7 +246,7 @@ Trial makeTrial(const Telemetry& t, const RefinedModel& model) {
   trial.run = runNumbers(trial.states);
   trial.covariates = varyingCovariates(trial.states);
   std::erase_if(trial.covariates, [&](const std::string& column) {
-    return std::ranges::find(stateColumns(), column) == stateColumns().end() && repeatsReading(trial, column);
+    return isOwnColumn(column) && repeatsReading(trial, column);
   });
   trial.groupings = groupingColumns(trial.states);
   addMoments(trial);

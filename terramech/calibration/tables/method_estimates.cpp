@@ -74,12 +74,10 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-StressPair spinPair(const Wheel& wheel, const WheelSample& sample, double /*shear_modulus_m*/) {
-  return sojournerPair(wheel, sample);
-}
-
 PairOf pairOf(const std::string& method) {
-  return method == "sojourner" ? spinPair : method == "iagnemma" ? iagnemmaPair : linearOffsetPair;
+  if (method == "sojourner")
+    return [](const Wheel& wheel, const WheelSample& sample, double) { return sojournerPair(wheel, sample); };
+  return method == "iagnemma" ? iagnemmaPair : linearOffsetPair;
 }
 
 ModulusCriterion criterionOf(const std::string& how) {
@@ -87,20 +85,6 @@ ModulusCriterion criterionOf(const std::string& how) {
          : how == "effective-torque"         ? ModulusCriterion::TorqueRatio
          : how == "effective-torque-printed" ? ModulusCriterion::EffectiveTorque
                                              : ModulusCriterion::Joint;
-}
-
-ModulusEstimate findModulus(ModulusCriterion criterion, const WheelRows& rows, const ProgressMonitor& watch) {
-  switch (criterion) {
-    case ModulusCriterion::ErrorMinimisation:
-      return modulusByErrorMinimisation(rows.wheel, rows.samples, {}, watch);
-    case ModulusCriterion::TorqueRatio:
-      return modulusByTorqueRatio(rows.wheel, rows.samples);
-    case ModulusCriterion::EffectiveTorque:
-      return modulusByEffectiveTorque(rows.wheel, rows.samples);
-    case ModulusCriterion::Joint:
-      break;
-  }
-  return modulusJointly(rows.wheel, rows.samples, {}, watch);
 }
 
 // Shear modulus column of the file, if it has one value in all rows.
@@ -131,33 +115,6 @@ void warnModulusUndetermined(const ModulusEstimate& k, SoilEstimate& estimate) {
       "shear_modulus_m: no minimum between 2 and 100 mm; vary the slip, or pass --shear-modulus");
 }
 
-ShearStrength withPriors(const ShearStrength& fit, const std::vector<StrengthPrior>& priors) {
-  return priors.empty() ? fit : withPrior(fit, priors);
-}
-
-// Points to which the line is fitted.
-std::vector<StressPair> pointsOf(const EstimateOptions& options, const WheelRows& rows, double modulus) {
-  std::vector<StressPair> points;
-  for (std::size_t k = 0; k < rows.samples.size(); ++k)
-    points.push_back(pairOf(options.method)(rows.wheels[k], rows.samples[k], modulus));
-  return points;
-}
-
-// Fits all rows at once.
-void fitTogether(const EstimateOptions& options, const WheelRows& rows, const std::vector<SoilPrior>& priors,
-                 const ProgressMonitor& watch, SoilEstimate& estimate) {
-  const auto known = knownModulus(options, priors);
-  const auto modulus = known ? ModulusEstimate{.shear_modulus_m = *known}
-                             : findModulus(criterionOf(options.shear_modulus), rows, watch);
-  if (watch.stopped()) return;
-  warnModulusUndetermined(modulus, estimate);
-  MohrCoulombLine line;
-  estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);
-  for (const StressPair& point : estimate.points) line.add(point);
-  estimate.take(withPriors(line.estimate(), strengthPriors(priors)));
-  estimate.shear_modulus_m = modulus.shear_modulus_m;
-}
-
 // Fits row by row in constant memory: one line if K is known, else one line per value of the shear-modulus
 // grid.
 class Recursion {
@@ -175,7 +132,8 @@ class Recursion {
     return true;
   }
   ShearStrength strength() const {
-    return withPriors(known_ ? line_.estimate() : ladder_.strength(), priors_);
+    const ShearStrength fit = known_ ? line_.estimate() : ladder_.strength();
+    return priors_.empty() ? fit : withPrior(fit, priors_);
   }
   ModulusEstimate modulus() const {
     return known_ ? ModulusEstimate{.shear_modulus_m = *known_} : ladder_.modulus();
@@ -201,10 +159,10 @@ RunningSoil runningOf(const Recursion& recursion) {
   }
 }
 
-void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
-                    const std::vector<SoilPrior>& priors, const ProgressMonitor& watch,
-                    SoilEstimate& estimate) {
+void fitLine(const EstimateOptions& options, const WheelRows& rows, const std::vector<SoilPrior>& priors,
+             const ProgressMonitor& watch, SoilEstimate& estimate) {
   Recursion recursion(options, rows.wheel, priors);
+  std::vector<std::size_t> used;
   for (std::size_t k = 0; k < rows.samples.size(); ++k) {
     if (watch.stopped()) return;
     watch.report(static_cast<double>(k) / static_cast<double>(rows.samples.size()));
@@ -213,6 +171,8 @@ void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
       --estimate.rows_used;
       continue;
     }
+    used.push_back(k);
+    if (!options.recursive) continue;
     estimate.running.push_back(runningOf(recursion));
     estimate.running.back().line = rows.lines[k];
   }
@@ -221,7 +181,9 @@ void fitRecursively(const EstimateOptions& options, const WheelRows& rows,
   warnModulusUndetermined(modulus, estimate);
   estimate.take(recursion.strength());
   estimate.shear_modulus_m = modulus.shear_modulus_m;
-  estimate.points = pointsOf(options, rows, modulus.shear_modulus_m);
+  for (const std::size_t k : used)
+    estimate.points.push_back(
+        pairOf(options.method)(rows.wheels[k], rows.samples[k], modulus.shear_modulus_m));
 }
 
 }  // namespace
@@ -240,7 +202,7 @@ SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor&
   estimate.rejected = rows.rejected;
   estimate.ignored = rows.ignored;
   estimate.rows_used = rows.samples.size();
-  (options.recursive ? fitRecursively : fitTogether)(options, rows, priors, watch, estimate);
+  fitLine(options, rows, priors, watch, estimate);
   return estimate;
 }
 

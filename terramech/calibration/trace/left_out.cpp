@@ -8,6 +8,7 @@
 #include <talus/common/common.hpp>
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 namespace {
@@ -130,12 +131,11 @@ std::vector<LeftOut> eachLevel(const Trial& trial, const std::string& column) {
 Eigen::MatrixXd features(const Trial& trial, const Trial& seen) {
   std::vector<Eigen::VectorXd> columns{Eigen::VectorXd::Ones(trial.rows())};
   for (const std::string& name : seen.covariates) {
-    double n = 0.0, sum = 0.0, square = 0.0;
+    PairMoments m;
     for (const WheelState& s : seen.states)
-      if (const double v = s.covariate(name); std::isfinite(v)) n += 1.0, sum += v, square += v * v;
-    const double mean = n > 0.0 ? sum / n : 0.0,
-                 std = n > 0.0 ? std::sqrt(std::max(0.0, square / n - mean * mean)) : 0.0;
-    if (!(std > 0.0)) continue;
+      if (const double v = s.covariate(name); std::isfinite(v)) m.add(v, 0.0);
+    if (!(m.xx > 0.0)) continue;
+    const double mean = m.x, std = std::sqrt(m.xx / m.weight);
     Eigen::VectorXd x(trial.rows());
     for (int row = 0; row < trial.rows(); ++row) {
       const double v = trial.states[static_cast<std::size_t>(row)].covariate(name);

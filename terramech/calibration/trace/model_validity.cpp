@@ -22,11 +22,10 @@ constexpr double kLeastShare = 0.5, kFarOff = 0.15, kLoudest = 0.25;
 constexpr double kMostPull = 1.0, kMostTorque = 1.5;
 
 Estimate scatterOf(const Trial& trial, int channel) {
-  double n = 0.0, sum = 0.0, square = 0.0;
+  PairMoments m;
   for (double v : trial.measured.col(channel))
-    if (std::isfinite(v)) n += 1.0, sum += v, square += v * v;
-  if (n < 2.0) return {};
-  return {sum / n, std::sqrt(std::max(0.0, square / n - (sum / n) * (sum / n)))};
+    if (std::isfinite(v)) m.add(v, 0.0);
+  return m.weight < 2.0 ? Estimate{} : Estimate{m.x, std::sqrt(m.xx / m.weight)};
 }
 
 /// Returns true if the scatter of a channel exceeds twice its noise or, for torque and sinkage, kLoudest of

@@ -14,6 +14,7 @@
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
@@ -202,19 +203,6 @@ bool accepted(const std::vector<Explanation>& ranked, double threshold) {
 
 namespace {
 
-/// Progress of work in an unknown number of rounds: each round counts as half of the remaining share.
-class Rounds {
- public:
-  double at(double share) {
-    if (share > 0.0 && share < last_) left_ *= 0.5;
-    last_ = share > 0.0 ? share : last_;
-    return 1.0 - left_ * (1.0 - 0.5 * last_);
-  }
-
- private:
-  double left_ = 1.0, last_ = 0.0;
-};
-
 TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOptions& given,
                      const ProgressMonitor& watch) {
   TraceOptions options = given;
@@ -222,7 +210,7 @@ TraceResult searched(const RefinedModel& base, const Trial& trial, const TraceOp
     options.max_effects = 1;
     options.least_share = 0.06;
   }
-  Rounds rounds;
+  RoundProgress rounds;
   const auto go_on = [&](double share) {
     watch.report(0.95 * rounds.at(share));
     return !watch.stopped();

@@ -380,44 +380,6 @@ TEST(DrawbarPull, FormulasAgreeAtVanishingSinkage) {
   EXPECT_DOUBLE_EQ(pullOfTriangularStress(kThesisWheel, s), 0.4);
 }
 
-TEST(DrawbarPull, PlaneFitRecoversAPlane) {
-  PullPlaneFitter fitter;
-  for (int k = 0; k < 20; ++k) {
-    const WheelSample s{
-        .load_N = 60.0 + k, .torque_Nm = 2.0 + 0.1 * ((k * 7) % 20), .sinkage_m = 0.01 + 0.001 * k};
-    fitter.add(kThesisWheel, s, kThesisExperimentPlane.at(kThesisWheel, s));
-  }
-  const PullPlaneFit fit = fitter.estimate();
-  EXPECT_NEAR(fit.plane.c1, 1.5, 1e-9);
-  EXPECT_NEAR(fit.plane.c2, -1.0, 1e-9);
-  EXPECT_NEAR(fit.plane.c3, -0.2, 1e-9);
-  EXPECT_LT(fit.residual_std, 1e-7);
-}
-
-TEST(DrawbarPull, PlaneFitStdIsTheResidualScatter) {
-  // Closed form: residual variance with n - 3 degrees of freedom, from the residuals themselves.
-  PullPlaneFitter fitter;
-  std::vector<std::pair<WheelSample, double>> data;
-  for (int k = 0; k < 7; ++k) {
-    const WheelSample s{.load_N = 60.0 + 5 * k,
-                        .torque_Nm = 2.0 + 0.1 * ((k * 5) % 7),
-                        .sinkage_m = 0.01 + 0.002 * ((k * 3) % 7)};
-    data.emplace_back(s, kThesisPlane.at(kThesisWheel, s) + 0.02 * ((k * k) % 3 - 1));
-    fitter.add(kThesisWheel, s, data.back().second);
-  }
-  const PullPlaneFit fit = fitter.estimate();
-  double squares = 0.0;
-  for (const auto& [s, pull] : data) squares += std::pow(fit.plane.at(kThesisWheel, s) - pull, 2);
-  EXPECT_NEAR(fit.residual_std, std::sqrt(squares / 4.0), 1e-9);
-  EXPECT_GT(fit.covariance(0, 0), 0.0);
-}
-
-TEST(DrawbarPull, PlaneFitRejectsCollinearSamples) {
-  PullPlaneFitter fitter;
-  for (int k = 0; k < 9; ++k) fitter.add(kThesisWheel, kSample, 0.1);
-  EXPECT_REFUSED(fitter.estimate(), std::domain_error, "the samples lie on a line; vary load and slip");
-}
-
 // RMS error of our formula over soils of Table 2.1 on a wheel.
 double rms(const Wheel& wheel) {
   ThesisRuns runs(77);

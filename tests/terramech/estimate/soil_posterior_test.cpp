@@ -360,10 +360,10 @@ TEST(SoilFilter, RejectedSampleLeavesTheStateUnchanged) {
   ThesisRuns runs(3);
   SoilFilter filter(kThesisWheel, thesisSoils(), {});
   for (const WheelSample& s : runs.next({.noise = 0.05}).samples) filter.add(s);
-  const double before = filter.mode().cohesion_Pa;
+  const double before = filter.posterior().mean.cohesion_Pa;
   EXPECT_THROW(filter.add({.load_N = -1.0, .torque_Nm = 1.0, .sinkage_m = 0.01, .slip = 0.3}),
                std::invalid_argument);
-  EXPECT_EQ(filter.mode().cohesion_Pa, before);
+  EXPECT_EQ(filter.posterior().mean.cohesion_Pa, before);
   EXPECT_EQ(filter.samples(), 10u);
 }
 

@@ -29,7 +29,6 @@ TEST(WheelRows, ReadsSamplesWithWheelLineAndText) {
   EXPECT_EQ(rows.samples[1].load_N, 82.0);
   EXPECT_EQ(rows.samples[1].slip, 0.4);
   EXPECT_THAT(rows.lines, ElementsAre(2, 4));
-  EXPECT_THAT(rows.words.front().values, ElementsAre("a", "c"));
   EXPECT_FALSE(rows.one_wheel);
   EXPECT_EQ(rows.wheel.radius_m, 0.1);
   EXPECT_EQ(rows.readings()[1].wheel.radius_m, 0.15);
@@ -78,7 +77,6 @@ TEST(WheelRows, SideForceWithoutSlipAngleIsRejected) {
   ASSERT_FALSE(rows.rejected.empty());
   EXPECT_EQ(rows.rejected.front().line, 2U);
   EXPECT_THAT(rows.rejected.front().reason, HasSubstr("side_force_N = 12 without slip_angle_rad"));
-  EXPECT_THAT(rows.words.front().values, ElementsAre("a", "a", "a"));
   EXPECT_THAT([&] { rowsOf("side_force_N," + kHead + "12," + row); },
               ThrowsMessage<InputError>(HasSubstr(":2: no usable row: side_force_N = 12 without")));
 }

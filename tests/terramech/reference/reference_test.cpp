@@ -1,5 +1,8 @@
 #include <cmath>
 
+#include <error_minimisation.hpp>
+#include <linear_offset_stresses.hpp>
+
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>
@@ -78,10 +81,9 @@ TEST(EstimatorReference, LinearOffsetMatchesTheReference) {
 
 TEST(EstimatorReference, LinearOffsetStressesMatchTheReference) {
   for (const auto& c : estimatorCases()) {
-    const ShearSoil soil{.cohesion_Pa = c.results["offset_cohesion_Pa"],
-                         .shear_modulus_m = c.shearModulus_m()};
     for (const auto& row : c.rows) {
-      const LinearOffsetStresses s = linearOffsetStresses(c.wheel(), sampleOf(row), soil);
+      const LinearOffsetStresses s =
+          linearOffsetStresses(c.wheel(), sampleOf(row), c.results["offset_cohesion_Pa"], c.shearModulus_m());
       expectClose(s.sigma_m_Pa, row["sigma_m_Pa"], 1e-9);
       expectClose(s.tau_m_Pa, row["tau_m_Pa"], 1e-9);
       expectClose(s.tau_offset_Pa, row["tau_offset_Pa"], 1e-9);
