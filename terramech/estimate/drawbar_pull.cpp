@@ -8,6 +8,7 @@
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/soil_objective.hpp>
 #include <talus/terramech/numerics/functions.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 

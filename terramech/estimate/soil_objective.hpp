@@ -10,6 +10,7 @@
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/numerics/functions.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 

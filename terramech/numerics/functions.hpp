@@ -51,22 +51,6 @@ inline double medianOf(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// Weighted means and central moments of pairs (x, y), one pair at a time (Welford).
-struct PairMoments {
-  double weight = 0.0, x = 0.0, y = 0.0;  ///< sum of weights, and means
-  double xx = 0.0, xy = 0.0, yy = 0.0;    ///< weighted sums of products of deviations from the means
-
-  void add(double new_x, double new_y, double w = 1.0) {
-    const double dx = new_x - x, dy = new_y - y;
-    weight += w;
-    x += dx * w / weight;
-    y += dy * w / weight;
-    xx += w * dx * (new_x - x);
-    xy += w * dx * (new_y - y);
-    yy += w * dy * (new_y - y);
-  }
-};
-
 /// Minimum of a function: abscissa and function value.
 struct Minimum {
   double at;

@@ -6,6 +6,7 @@
 
 #include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/strength/bevameter.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 

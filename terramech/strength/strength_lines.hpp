@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 
 #include <talus/terramech/contact/wheel_on_soil.hpp>
-#include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::terramech {
 
@@ -34,6 +33,22 @@ struct ShearStrength {
 
   /// Returns the friction angle phi = arctan(tan_friction) [rad].
   double frictionAngle_rad() const;
+};
+
+/// Weighted means and central moments of pairs (x, y), one pair at a time (Welford).
+struct PairMoments {
+  double weight = 0.0, x = 0.0, y = 0.0;  ///< sum of weights, and means
+  double xx = 0.0, xy = 0.0, yy = 0.0;    ///< weighted sums of products of deviations from the means
+
+  void add(double new_x, double new_y, double w = 1.0) {
+    const double dx = new_x - x, dy = new_y - y;
+    weight += w;
+    x += dx * w / weight;
+    y += dy * w / weight;
+    xx += w * dx * (new_x - x);
+    xy += w * dx * (new_y - y);
+    yy += w * dy * (new_y - y);
+  }
 };
 
 /// Recursive least-squares fit of the line shear = c + normal tan(phi) (thesis Eqs. 2.13 to 2.16, B.9 to

@@ -6,6 +6,7 @@
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/noise/sensor_noise.hpp>
 #include <talus/terramech/numerics/functions.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 namespace {

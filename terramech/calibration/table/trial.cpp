@@ -9,6 +9,7 @@
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
 #include <talus/terramech/numerics/functions.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {

@@ -9,6 +9,7 @@
 #include <talus/terramech/calibration/held_out/held_out.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
 #include <talus/terramech/numerics/functions.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::terramech {
 namespace {

@@ -11,6 +11,7 @@
 #include <talus/terramech/calibration/search/trial_fit.hpp>
 #include <talus/terramech/calibration/trace/residual_trace.hpp>
 #include <talus/terramech/numerics/functions.hpp>
+#include <talus/terramech/strength/strength_lines.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
 namespace talus::terramech {
