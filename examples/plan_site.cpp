@@ -16,10 +16,7 @@ int main() try {
   talus::Planner planner;  // keeps its data between calls
   const talus::Route route =
       planner.plan(map, {.start = {12, 30}, .goal = {310, 120}, .tolerance_m = 0.5, .prove = true});
-  if (!route.found()) {
-    std::printf("%s\n", route.reason.c_str());
-    return 1;
-  }
+  if (!route.found()) return std::printf("%s\n", route.reason.c_str()), 1;
   std::printf("%.0f m, %.0f J, at most %.1f %% above the best\n", route.length_m, route.energy_J,
               100 * route.gap);
   for (const talus::RouteVertex& v : route.vertices)
