@@ -422,7 +422,7 @@ class PointSearchRun {
   double most_J_;
   std::uint32_t n_, per_cell_;          // points on a side; nodes
   std::vector<std::uint32_t> slot_of_;  // by cell of the region
-  std::vector<Cell> cells_, goals_;     // by slot; cells that touch the goal
+  std::vector<Cell> cells_, goals_;     // by slot; cells from which a leg may end at the goal
   std::vector<float> labels_, prices_;  // by node; by slot and heading
   std::vector<std::uint32_t> from_;
   std::priority_queue<std::pair<float, std::uint32_t>, std::vector<std::pair<float, std::uint32_t>>,
