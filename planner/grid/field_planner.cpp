@@ -197,7 +197,7 @@ void FieldPlanner::tryOverPoints(const Problem& problem, const Stage& stage, con
     plan.cost_J = cost_J;
   };
   Polyline way = overPoints(problem, stage, kSettled * plan.cost_J, stop);
-  if (way.size() > 1) take(refined(problem, stage, std::move(way), stop));
+  if (way.size() > 1) take(refined(problem, stage, withSettledVertices(cost, std::move(way), stop), stop));
   take(withoutCloseVertices(cost, withSettledVertices(cost, plan.points, stop)));
   plan.lower_bound_J = std::min(plan.lower_bound_J, plan.cost_J);
 }
