@@ -157,7 +157,9 @@ HeadingSet HeadingSet::reversed() const {
 }
 
 HeadingSets::Limits::Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve)
-    : along(limitsAlong(cost, curve)), across(limitsAcross(cost, curve)), gentle(gentleGradient(cost, curve)) {}
+    : along(limitsAlong(cost, curve)),
+      across(limitsAcross(cost, curve)),
+      gentle(gentleGradient(cost, curve)) {}
 
 HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell) {
   if (cell.curve() >= cost.curves().size()) return {};
