@@ -429,13 +429,8 @@ void makeConvex(Octagon& weights) noexcept {
   weights.fill(*std::ranges::min_element(weights));
 }
 
-}  // namespace
-
-#if defined(__x86_64__)
-__attribute__((target_clones("avx2", "default"), flatten))
-#endif
-Octagon
-fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon& wanted) {
+__attribute__((always_inline)) inline Octagon fit(const DirectionalCostBounds::Limits& limits,
+                                                  const Octagon& wanted) noexcept {
   const float even = kEven * *std::ranges::min_element(limits);
   const Sectors sectors(limits);
   Octagon weights, ratio;
@@ -450,6 +445,22 @@ fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon& wanted
   Octagon octagon;
   for (std::size_t k = 0; k < 8; ++k) octagon[k] = (weights[k] + share * (even - weights[k])) * kRounding;
   return octagon;
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2"), flatten)) Octagon fitByVector(const DirectionalCostBounds::Limits& limits,
+                                                             const Octagon& wanted) noexcept {
+  return fit(limits, wanted);
+}
+#else
+constexpr auto fitByVector = fit;
+#endif
+
+}  // namespace
+
+Octagon fittedOctagon(const DirectionalCostBounds::Limits& limits, const Octagon& wanted) {
+  static const bool vectors = vectorsRun(Kernels::Best);
+  return vectors ? fitByVector(limits, wanted) : fit(limits, wanted);
 }
 
 Octagon FittedOctagons::of(costmap::CellCode cell) {
