@@ -442,12 +442,12 @@ void addShape(std::vector<EffectForm>& all, int shape, std::initializer_list<con
                    .family = "drift",
                    .covariate = "time_s",
                    .channel = channel,
+                   .of_sensor = true,
                    .formula = formula,
                    .source = "ours",
                    .signature = "one channel alone drifts",
                    .parameters = shapeParameters(target, shape),
-                   .read = read,
-                   .of_sensor = true});
+                   .read = read});
   };
   soil(Channel::DrawbarPull, "c -> c (1 + g(u))", {"-", -0.95, 8.0, 0.3}, cohesion<Shape>);
   soil(Channel::DrawbarPull, "tan phi -> tan phi (1 + g(u))", {"-", -0.8, 3.0, 0.1}, friction<Shape>);

@@ -198,9 +198,10 @@ struct EffectInput {
 /// Form of an effect: an entry of the effect library. Plain data with static lifetime.
 struct EffectForm {
   const char* name;
-  const char* family;     ///< name shared by all forms of one physical cause
-  const char* covariate;  ///< telemetry column with which the residual correlates
-  Channel channel;        ///< channel with the largest residual
+  const char* family;      ///< name shared by all forms of one physical cause
+  const char* covariate;   ///< telemetry column with which the residual correlates
+  Channel channel;         ///< channel with the largest residual
+  bool of_sensor = false;  ///< true: sensor error, which does not influence the ground or routes
   const char* formula;
   const char* source;     ///< keys of REFERENCES.bib, or "ours"
   const char* signature;  ///< description of the residual by which the effect is recognised
@@ -209,7 +210,6 @@ struct EffectForm {
   void (*act)(const EffectInput&, WheelContact&) = nullptr;
   /// Function that changes the readings after the contact is solved; null: no change.
   void (*read)(const EffectInput&, const WheelContact&, Reading&) = nullptr;
-  bool of_sensor = false;  ///< true: sensor error, which does not influence the ground or routes
 };
 
 /// Returns the library of all effect forms.
