@@ -169,16 +169,11 @@ TEST(PointSearch, FindsTheCheapestPathOverEdgePoints) {
   EXPECT_GT(steep, 10);
 }
 
-// Ends on edges and corners, at the map's border, with zero reach: the search includes the cells that touch
-// the ends.
-TEST(PointSearch, EndsMayLieOnMapEdges) {
-  const MotionCost cost(drawn(std::vector<std::string>(6, std::string(7, '.'))));
-  for (const Point from : {Point{0.0, 2.0}, Point{3.0, 0.0}, Point{0.0, 0.0}, Point{7.0, 6.0}})
-    for (const Point to : {Point{5.0, 4.0}, Point{7.0, 3.0}, Point{2.0, 6.0}, Point{4.5, 6.0}}) {
-      const PointPath path = searchNear(cost, {from, to}, 1e9, 0, 3);
-      if (path.points.empty()) continue;
-      EXPECT_GE(priced(cost, path), 10.0 * std::hypot(to.x_m - from.x_m, to.y_m - from.y_m) * (1 - 1e-6));
-    }
+// A leg that passes a corner within 1e-5 of a cell touches the blocked cell there.
+TEST(MotionCost, LegsCloseToACornerTouchItsCells) {
+  const MotionCost cost(drawn({".#", ".."}));
+  EXPECT_TRUE(std::isfinite(cost({{0.2, 0.99}, {1.8, 0.98}})));
+  EXPECT_TRUE(std::isinf(cost({{0.2, 0.9999985}, {1.8, 0.9999975}})));
 }
 
 TEST(PointSearch, PathStaysWithinReachOfTheRoute) {
