@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <talus/common/common.hpp>
@@ -182,6 +183,20 @@ std::string wordOf(const YAML::Node& node, const std::string& where, const std::
   return word;
 }
 
+/// Lets YAML::Parser pass a document.
+struct IgnoredEvents final : YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
 }  // namespace
 
 YamlFields YamlFields::of(const YAML::Node& node, const std::string& origin, const std::string& what) {
@@ -229,11 +244,15 @@ YamlFields YamlFields::text(const std::string& yaml, const std::string& origin) 
                             std::count(yaml.begin(), yaml.begin() + static_cast<std::ptrdiff_t>(nul), '\n')),
          "holds a NUL byte", "save it as UTF-8");
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
-    if (documents.size() > 1) fail(origin, "holds more than one YAML document", "keep one of them");
-    if (documents.empty() || documents.front().IsNull())
-      fail(origin, "is empty", "write `name: value` lines");
-    return of(documents.front(), origin, "");
+    const YAML::Node root = YAML::Load(yaml);
+    if (root.IsNull()) fail(origin, "is empty", "write `name: value` lines");
+    // Never YAML::LoadAll: on content that is not YAML, such as ",", it finds documents without end.
+    std::istringstream in(yaml);
+    YAML::Parser parser(in);
+    IgnoredEvents events;
+    if (parser.HandleNextDocument(events) && parser.HandleNextDocument(events))
+      fail(origin, "holds more than one YAML document", "keep one of them");
+    return of(root, origin, "");
   } catch (const YAML::Exception& e) {
     fail(origin + ":" + std::to_string(e.mark.line + 1), "not YAML: " + e.msg, "correct the syntax");
   }
