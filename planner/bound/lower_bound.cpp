@@ -216,9 +216,10 @@ std::vector<float> cornerField(const std::shared_ptr<const costmap::CostGrid>& m
 namespace {
 
 constexpr auto kFar = static_cast<float>(kInfinity);
-constexpr double kLeastGain =
-    0.1;                       // smallest share of the gap that a round closes for which another one follows
-constexpr int kFitRounds = 8;  // of level 2
+// Of level 2: smallest share of the gap that a round closes for which another one follows, share of the gap above the
+// bound up to which a round fits cells, most rounds.
+constexpr double kLeastGain = 0.03, kFitShare = 0.35;
+constexpr int kFitRounds = 16;
 // Work of level 3: cells of its region, and nodes taken and cells checked.
 constexpr std::size_t kMeshCells = 60'000, kMeshWork = 3'000'000;
 
@@ -415,9 +416,10 @@ double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal
     forEachInside([&](maps::Cell cell, std::size_t at) { inside_[at] = throughCell_J(cell) <= known_J; });
     if (round == kFitRounds || bound_J >= enough_J) break;
     bool stopped = false;
+    const double fitted_J = bound_J + kFitShare * (known_J - bound_J);
     forEachInside([&](maps::Cell cell, std::size_t at) {
       if ((at & 0xffffU) == 0) stopped = stopped || stop();
-      if (stopped) return;
+      if (stopped || throughCell_J(cell) > fitted_J) return;
       DirectionalCostBounds::Limits limits;
       if (!octagons_->limits().of(map_->at(cell), limits)) return;
       const auto rises = risesIn(from_start_, grid, cell);

@@ -79,11 +79,11 @@ std::vector<float> cornerField(const std::shared_ptr<const costmap::CostGrid>& m
 /// field of the goal, every route of at most a cost L stays in the region of the cells with a corner at which
 /// F + B <= L: it crosses the boundary of each cell where the interpolated sum is at most L (ours; compare
 /// Clawson, Chacon and Vladimirsky 2014 [clawson_2014]). Level 2 consists of rounds within the region of the known
-/// cost. Each fits the octagons of the cells of the region to the differences of F between their corners, and
-/// computes F anew; B follows every second time. The field satisfies its own differences, so that fits never
-/// lower it. The last round is the one that closes less than a tenth of the gap. Level 3 is a SubSolution in the region of the
-/// highest L that has a limited number of cells; it proves at most L, and cells are added while it proves L. The
-/// work of each level is limited. straightBoundOver_J(), or the bound on a uniform map that is nowhere more
+/// cost. Each fits the octagons of the cells on routes of at most the bound and a third of the gap to the differences
+/// of F between their corners, and computes F anew; B follows every second time. The field satisfies its own
+/// differences, so that fits never lower it. The last round is the one that closes less than 3 % of the gap. Level 3
+/// is a SubSolution in the region of the highest L that has a limited number of cells; it proves at most L, and cells
+/// are added while it proves L. The work of each level is limited. straightBoundOver_J(), or the bound on a uniform map that is nowhere more
 /// expensive, is used if it is higher.
 class LowerBound {
  public:
