@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include <talus/common/common.hpp>
 #include <talus/planner/refine/vertices.hpp>
@@ -84,48 +86,74 @@ constexpr std::size_t kShortest = 3;  // smallest number of legs that is replace
 constexpr int kMostRounds = 6;
 constexpr double kGain = 1e-9;  // smallest gain relative to the stretch's cost
 
-// Stretch between two points of a route, with the adjacent legs, whose turns change, too.
-class Stretch {
+// Route with the costs of its legs, of which stretches are replaced by two legs.
+class Tacks {
  public:
-  Stretch(const MotionCost& cost, const Polyline& route, std::size_t first, std::size_t last)
-      : cost_(cost), route_(route), first_(first), last_(last) {}
+  Tacks(const MotionCost& cost, Polyline route)
+      : cost_(cost), route_(std::move(route)), drive_J_(route_.size()), turn_J_(route_.size()) {
+    for (std::size_t k = 1; k < route_.size(); ++k) price(k);
+  }
 
-  /// Sets the corner of the cheaper of the two paths of two legs. Returns false if neither is cheaper than
-  /// the stretch.
-  bool gather(Point& corner) const {
-    double best_J = cost_.along(with(route_.begin() + offset(first_ + 1), route_.begin() + offset(last_)));
-    best_J *= 1.0 - kGain;
-    bool found = false;
-    for (const Point& tried : corners()) {
-      const double tried_J = cost_.along(with(&tried, &tried + 1));
-      if (!(tried_J < best_J)) continue;
-      best_J = tried_J;
-      corner = tried;
-      found = true;
+  const Polyline& route() const noexcept { return route_; }
+
+  /// Replaces stretches of `legs` legs where that is cheaper; successive stretches begin legs / 2 legs apart.
+  /// Returns true if the route changed.
+  bool gather(std::size_t legs) {
+    bool any = false;
+    for (std::size_t first = 0; first + kShortest < route_.size();) {
+      const std::size_t last = std::min(first + legs, route_.size() - 1);
+      const bool made = last - first >= kShortest && gather(first, last);
+      first += made ? 1 : std::max<std::size_t>(legs / 2, 1);
+      any = any || made;
     }
-    return found;
+    return any;
   }
 
  private:
+  // Replaces a stretch by the cheaper of the two paths of two legs, if it is cheaper than the stretch. The adjacent
+  // legs, whose turns change, too, count.
+  bool gather(std::size_t first, std::size_t last) {
+    const std::size_t from = first > 0 ? first - 1 : 0, to = std::min(last + 1, route_.size() - 1);
+    double best_J = drive_J_[from + 1];
+    for (std::size_t k = from + 2; k <= to; ++k) best_J += turn_J_[k] + drive_J_[k];
+    best_J *= 1.0 - kGain;
+    std::optional<Point> corner;
+    const double beside_J = (from < first ? drive_J_[first] : 0.0) + (to > last ? drive_J_[to] : 0.0);
+    for (const Point& tried : corners(first, last)) {
+      const Segment there{route_[first], tried}, on{tried, route_[last]};
+      if (!(beside_J + cost_(there) + cost_(on) < best_J)) continue;  // without the turns
+      Polyline points(route_.begin() + offset(from), route_.begin() + offset(first + 1));
+      points.push_back(tried);
+      points.insert(points.end(), route_.begin() + offset(last), route_.begin() + offset(to + 1));
+      const double tried_J = cost_.along(points);
+      if (!(tried_J < best_J)) continue;
+      best_J = tried_J;
+      corner = tried;
+    }
+    if (!corner) return false;
+    route_[first + 1] = *corner;
+    for (auto* costs : {&drive_J_, &turn_J_})
+      costs->erase(costs->begin() + offset(first + 2), costs->begin() + offset(last));
+    route_.erase(route_.begin() + offset(first + 2), route_.begin() + offset(last));
+    for (std::size_t k = first + 1; k < std::min(first + 4, route_.size()); ++k) price(k);
+    return true;
+  }
+
   static std::ptrdiff_t offset(std::size_t k) noexcept { return static_cast<std::ptrdiff_t>(k); }
 
-  template <typename Iterator>
-  Polyline with(Iterator begin, Iterator end) const {
-    Polyline points;
-    if (first_ > 0) points.push_back(route_[first_ - 1]);
-    points.push_back(route_[first_]);
-    points.insert(points.end(), begin, end);
-    points.push_back(route_[last_]);
-    if (last_ + 1 < route_.size()) points.push_back(route_[last_ + 1]);
-    return points;
+  // Computes the costs of the leg to point k and of the turn into it.
+  void price(std::size_t k) {
+    const Segment leg{route_[k - 1], route_[k]};
+    drive_J_[k] = cost_(leg);
+    if (k > 1) turn_J_[k] = cost_.turn(leg.from, directionOf({route_[k - 2], leg.from}), directionOf(leg));
   }
 
   // Corners of both orders: all displacement to the left of the line between the ends first, or last.
-  std::array<Point, 2> corners() const {
-    const Point from = route_[first_], to = route_[last_];
+  std::array<Point, 2> corners(std::size_t first, std::size_t last) const {
+    const Point from = route_[first], to = route_[last];
     const double x_m = to.x_m - from.x_m, y_m = to.y_m - from.y_m;
     Point left{0.0, 0.0};
-    for (std::size_t k = first_; k < last_; ++k) {
+    for (std::size_t k = first; k < last; ++k) {
       const double dx_m = route_[k + 1].x_m - route_[k].x_m, dy_m = route_[k + 1].y_m - route_[k].y_m;
       if (!(x_m * dy_m - y_m * dx_m > 0.0)) continue;
       left.x_m += dx_m;
@@ -135,29 +163,9 @@ class Stretch {
   }
 
   const MotionCost& cost_;
-  const Polyline& route_;
-  std::size_t first_, last_;
+  Polyline route_;
+  std::vector<double> drive_J_, turn_J_;  // of the leg to a point, and of the turn into this leg
 };
-
-// Replaces stretches of `legs` legs by two legs where gather() allows; successive stretches begin legs / 2
-// legs apart. Returns true if the route changed.
-bool gatherAll(const MotionCost& cost, Polyline& route, std::size_t legs) {
-  bool any = false;
-  for (std::size_t first = 0; first + kShortest < route.size();) {
-    const std::size_t last = std::min(first + legs, route.size() - 1);
-    Point corner;
-    if (last - first < kShortest || !Stretch(cost, route, first, last).gather(corner)) {
-      first += std::max<std::size_t>(legs / 2, 1);
-      continue;
-    }
-    route.erase(route.begin() + static_cast<std::ptrdiff_t>(first) + 2,
-                route.begin() + static_cast<std::ptrdiff_t>(last));
-    route[first + 1] = corner;
-    any = true;
-    ++first;
-  }
-  return any;
-}
 
 constexpr std::array kSteps{0.2, 0.1, 0.05, 0.025, 0.0125};  // cells
 constexpr int kSweeps = 4;                                   // largest number of sweeps per step
@@ -239,13 +247,14 @@ Polyline withFewerTurns(const MotionCost& cost, const Polyline& route) {
 }
 
 Polyline withLongerTacks(const MotionCost& cost, Polyline route) {
+  Tacks tacks(cost, std::move(route));
   for (int round = 0; round < kMostRounds; ++round) {
     bool any = false;
-    for (std::size_t legs = std::bit_ceil(route.size()); legs >= kShortest; legs /= 2)
-      any = gatherAll(cost, route, legs) || any;
+    for (std::size_t legs = std::bit_ceil(tacks.route().size()); legs >= kShortest; legs /= 2)
+      any = tacks.gather(legs) || any;
     if (!any) break;
   }
-  return route;
+  return tacks.route();
 }
 
 Polyline withSettledVertices(const MotionCost& cost, Polyline points, const StopCheck& stop,

@@ -303,7 +303,7 @@ bool MotionCost::turnAllowed(const Segment& motion, maps::Point end) const noexc
   const InCells p = inCells(map_->grid(), end);
   if (!onEdge(p.x, kClose) && !onEdge(p.y, kClose)) return true;
   const double dx = motion.to.x_m - motion.from.x_m, dy = motion.to.y_m - motion.from.y_m;
-  const double length = std::hypot(dx, dy);
+  const double length = lengthOf({dx, dy});
   return length == 0.0 || touchesOnlyAllowed(*map_, p, {dx / length, dy / length});
 }
 
