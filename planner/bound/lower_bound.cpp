@@ -220,8 +220,15 @@ constexpr auto kFar = static_cast<float>(kInfinity);
 // bound up to which a round fits cells, most rounds.
 constexpr double kLeastGain = 0.03, kFitShare = 0.35;
 constexpr int kFitRounds = 16;
-// Work of level 3: cells of its region, and nodes taken and cells checked.
-constexpr std::size_t kMeshCells = 60'000, kMeshWork = 3'000'000;
+// Of level 3: cells of its first region, cells of the box around it, smallest share of the gap that a division of the
+// cells closes for which another one follows.
+constexpr std::size_t kMeshCells = 60'000, kBoxCells = 8'000'000;
+constexpr double kLeastDivided = 0.1;
+
+// Nodes that level 3 takes and cells that it checks, on a map of `cells` cells.
+constexpr std::size_t meshWork(std::size_t cells) noexcept {
+  return std::max(std::min<std::size_t>(30 * cells, 6'000'000), std::min<std::size_t>(3 * cells, 12'000'000));
+}
 
 // Index of a corner in a cornerField().
 std::size_t cornerIndex(const maps::Grid& grid, maps::Cell corner) noexcept {
@@ -442,18 +449,83 @@ double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal
     if (last) break;
   }
   fits = {};
-  SubSolution::Parts parts{map_, places, tolerance_m_, 0.0, cheapestMetre_J(*map_), from_start_, {}};
-  std::size_t work = 0;
-  for (std::size_t cells = kMeshCells; bound_J < enough_J && work < kMeshWork; cells *= 2) {
-    parts.most_J = costFor(cells, bound_J, known_J);
-    parts.region.assign(grid.size(), false);
-    forEachInside(
-        [&](maps::Cell cell, std::size_t at) { parts.region[at] = throughCell_J(cell) <= parts.most_J; });
-    const SubSolution solution(parts, octagons_->limits(), kMeshWork - work, stop);
-    work += solution.work();
-    const double proven_J = provenBy(solution, parts).bound_J;
-    bound_J = std::max(bound_J, proven_J);
-    if (parts.most_J >= known_J || proven_J < (1.0 - kEven) * parts.most_J || stop()) break;
+  return std::max(bound_J, certified_J(places, bound_J, known_J, enough_J, stop));
+}
+
+namespace {
+
+// Returns the part of a map that contains a region, with each cell divided into `divided` x `divided` equal cells, the
+// region there, and the lower bounds from the start.
+SubSolution::Parts dividedPart(const costmap::CostGrid& map, const maps::CellBox& box,
+                               const std::vector<bool>& region, const std::vector<float>& from_start,
+                               int divided) {
+  const maps::Grid& grid = map.grid();
+  maps::Grid part{.width = box.width() * divided,
+                  .height = box.height() * divided,
+                  .resolution_m = grid.resolution_m / divided,
+                  .south_west = {grid.south_west.x_m + box.first.column * grid.resolution_m,
+                                 grid.south_west.y_m + box.first.row * grid.resolution_m}};
+  const auto outer = [&](int column, int row) {
+    return Cell{box.first.column + std::min(column / divided, box.width() - 1),
+                box.first.row + std::min(row / divided, box.height() - 1)};
+  };
+  maps::Raster<CellCode> cells(part);
+  SubSolution::Parts parts{.most_J = 0.0, .cheapest_J = cheapestMetre_J(map)};
+  parts.region.resize(part.size());
+  for (int row = 0; row < part.height; ++row)
+    for (int column = 0; column < part.width; ++column) {
+      cells[Cell{column, row}] = map.at(outer(column, row));
+      parts.region[part.index({column, row})] = region[grid.index(outer(column, row))];
+    }
+  parts.map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, map.content().cost));
+  // At a new corner, the lowest bound of the cell's corners holds: a route enters the cell between two of them.
+  for (int row = 0; row <= part.height; ++row)
+    for (int column = 0; column <= part.width; ++column) {
+      const bool old = row % divided == 0 && column % divided == 0;
+      const auto of = cornersOf(grid, outer(column, row));
+      const auto at = [&](std::size_t corner) { return from_start[corner]; };
+      parts.from_start.push_back(
+          old ? at(cornerIndex(grid, {box.first.column + column / divided, box.first.row + row / divided}))
+              : std::min({at(of[0]), at(of[1]), at(of[2]), at(of[3])}));
+    }
+  return parts;
+}
+
+}  // namespace
+
+double LowerBound::certified_J(const Segment& places, double bound_J, double known_J, double enough_J,
+                               const StopCheck& stop) {
+  const maps::Grid& grid = map_->grid();
+  std::vector<bool> region(grid.size());
+  std::size_t cells = kMeshCells, left = meshWork(grid.size()), next = 0;
+  for (int divided = 1; bound_J < enough_J && next < left && !stop();) {
+    const double most_J = divided == 1 ? costFor(cells, bound_J, known_J) : known_J;
+    maps::CellBox box{{grid.width, grid.height}, {-1, -1}};
+    forEachInside([&](Cell cell, std::size_t at) {
+      region[at] = throughCell_J(cell) <= most_J;
+      if (region[at])
+        box = {{std::min(box.first.column, cell.column), std::min(box.first.row, cell.row)},
+               {std::max(box.last.column, cell.column), std::max(box.last.row, cell.row)}};
+    });
+    const auto parts_of = [divided](int cells_of) { return static_cast<std::size_t>(cells_of * divided); };
+    if (box.width() <= 0 || parts_of(box.width()) * parts_of(box.height()) > kBoxCells) break;
+    SubSolution::Parts parts = dividedPart(*map_, box, region, from_start_, divided);
+    parts.places = places;
+    parts.goal_tolerance_m = tolerance_m_;
+    parts.most_J = most_J;
+    const SubSolution solution(parts, octagons_->limits(), left, stop);
+    const Proof proof = provenBy(solution, parts);
+    const double gap_J = known_J - bound_J;
+    bound_J = std::max(bound_J, proof.bound_J);
+    left -= std::min(left, solution.work());
+    if (most_J < known_J) {
+      if (proof.bound_J < (1.0 - kEven) * most_J) break;
+      cells *= 2;
+    } else {
+      if (divided > 1 && !(known_J - bound_J < (1.0 - kLeastDivided) * gap_J)) break;
+      divided *= 2;
+      next = 4 * solution.work();
+    }
   }
   return bound_J;
 }

@@ -83,8 +83,9 @@ std::vector<float> cornerField(const std::shared_ptr<const costmap::CostGrid>& m
 /// of F between their corners, and computes F anew; B follows every second time. The field satisfies its own
 /// differences, so that fits never lower it. The last round is the one that closes less than 3 % of the gap. Level 3
 /// is a SubSolution in the region of the highest L that has a limited number of cells; it proves at most L, and cells
-/// are added while it proves L. The work of each level is limited. straightBoundOver_J(), or the bound on a uniform map that is nowhere more
-/// expensive, is used if it is higher.
+/// are added while it proves L. In the region of the known cost, cells are then divided into equal cells, which halves
+/// the length on which the solution is linear, again and again. The work of each level is limited.
+/// straightBoundOver_J(), or the bound on a uniform map that is nowhere more expensive, is used if it is higher.
 class LowerBound {
  public:
   /// Returns the lower bound [J] for routes from `places.from` to within `goal_tolerance_m` of `places.to`.
@@ -121,6 +122,9 @@ class LowerBound {
   double costFor(std::size_t cells, double least_J, double known_J) const;
   double narrowed_J(const Segment& places, const std::vector<FieldGoal>& starts, double known_J,
                     double enough_J, const StopCheck& stop);
+  // Returns the bound [J], at least `bound_J`, of level 3.
+  double certified_J(const Segment& places, double bound_J, double known_J, double enough_J,
+                     const StopCheck& stop);
 
   std::shared_ptr<const costmap::CostGrid> map_;
   std::optional<FittedOctagons> octagons_;
