@@ -20,7 +20,8 @@ void judge(Assessment& a, const CategoryThresholds& limits) {
                                       limits);
 }
 
-// Forecasts the pull at other slips from the joint posterior of all rows, at the load of each row.
+// Forecasts the pull at other slips from the joint posterior of all rows, at the load of each row. The soil is
+// fitted to smooth wheels, so that its strength contains the thrust of the lugs.
 void extrapolate(const AssessOptions& options, const WheelRows& rows, const ProgressMonitor& watch,
                  std::vector<Assessment>& result) {
   SoilFitOptions fit{.noise = ReadingErrors::relative(std::max(options.noise, 1e-3)), .watch = watch};
@@ -31,7 +32,9 @@ void extrapolate(const AssessOptions& options, const WheelRows& rows, const Prog
                       "leave out --extrapolate"});
   PullForecasts forecasts(fitSoil(readings, thesisSoilsOrOther(), fit), options.reference_slip);
   for (std::size_t k = 0; k < result.size() && !watch.stopped(); ++k) {
-    result[k].forecast = forecasts.at(rows.wheels[k], rows.samples[k].load_N);
+    Wheel smooth = rows.wheels[k];
+    smooth.lug_thrust = 0.0;
+    result[k].forecast = forecasts.at(smooth, rows.samples[k].load_N);
     watch.report(static_cast<double>(k) / static_cast<double>(result.size()));
   }
   watch.report(1.0);

@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include <talus/common/common.hpp>
+#include <talus/terramech/calibration/noise/run_likelihood.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 
 namespace talus::terramech {
@@ -310,17 +311,12 @@ class FormulaSearch {
         .finished();
   }
 
-  /// Gains of all candidates beside `chosen`, and the ascending greatest gains on drawn tables.
+  /// Gains of all candidates beside `chosen`, and their distribution on drawn tables.
   struct Scan {
     VectorXd gain;
-    std::vector<double> greatest;
+    GainDistribution noise;
     double ratio = 0.0;  ///< of the variances of runs and rows, without a candidate
     Index best = 0;
-
-    double pValue(double reached) const {
-      const auto beyond = greatest.end() - std::ranges::lower_bound(greatest, reached);
-      return static_cast<double>(1 + beyond) / static_cast<double>(1 + std::ssize(greatest));
-    }
   };
 
   Scan scan(const std::vector<Index>& chosen) const {
@@ -329,15 +325,9 @@ class FormulaSearch {
     const MatrixXd gain = gains(tables(s.ratio), baseWith(chosen), s.ratio);
     s.gain = gain.col(0);
     s.gain.maxCoeff(&s.best);
-    for (Index t = 1; t < gain.cols(); ++t) s.greatest.push_back(gain.col(t).maxCoeff());
-    std::ranges::sort(s.greatest);
+    for (Index t = 1; t < gain.cols(); ++t) s.noise.greatest.push_back(gain.col(t).maxCoeff());
+    std::ranges::sort(s.noise.greatest);
     return s;
-  }
-
-  /// Returns the gain that is exceeded on a share `significance` of the drawn tables, at least 0.
-  double threshold(const Scan& s) const {
-    const auto above = std::max(1L, std::lround(options_.significance * (1.0 + options_.draws)));
-    return std::max(0.0, *(s.greatest.end() - above));
   }
 
   /// Accepts the best candidate, and exchanges earlier ones, until nothing gains more.
@@ -346,7 +336,7 @@ class FormulaSearch {
     const Index most = std::min<Index>(options_.max_effects, base_.rows() - base_.cols() - 3);
     while (std::ssize(chosen) < most) {
       const Scan s = scan(chosen);
-      if (!(s.gain[s.best] > threshold(s))) return chosen;
+      if (!(s.gain[s.best] > std::max(0.0, s.noise.threshold(options_.significance)))) return chosen;
       chosen.push_back(s.best);
       for (std::size_t k = 0; k < chosen.size();) {
         const Scan in_place = scan(without(chosen, k));
@@ -416,14 +406,14 @@ void describe(const FormulaSearch& search, const Linear& model, const MatrixXd& 
     const auto in_place = search.scan(FormulaSearch::without(chosen, k));
     const double own = in_place.gain[chosen[k]];
     trace.effects.push_back(
-        {search.nameOf(chosen[k]), {after.value[at], after.std[at]}, own, in_place.pValue(own), {}});
+        {search.nameOf(chosen[k]), {after.value[at], after.std[at]}, own, in_place.noise.pValue(own), {}});
     for (Index j = 0; j < in_place.gain.size(); ++j)
       if (j != chosen[k] && in_place.gain[j] >= std::max(0.0, own - closeGain({})))
         trace.effects.back().equal.push_back(search.nameOf(j));
   }
   for (Index j = 0; j < last.gain.size(); ++j)
     if (std::ranges::find(chosen, j) == chosen.end())
-      trace.rejected.push_back({search.nameOf(j), {}, last.gain[j], last.pValue(last.gain[j]), {}});
+      trace.rejected.push_back({search.nameOf(j), {}, last.gain[j], last.noise.pValue(last.gain[j]), {}});
   std::ranges::stable_sort(trace.rejected, std::ranges::greater{}, &FormulaEffect::gain);
   trace.base_rmse = before.rmse;
   trace.refined_rmse = after.rmse;

@@ -68,6 +68,24 @@ TEST(Assessment, ForecastAtReferenceSlipIsAccurate) {
   }
 }
 
+// Property: readings of a smooth wheel determine the pull at the reference slip, whatever lugs the rover file states.
+TEST(Assessment, LugsOfTheRoverAreCountedOnceInAForecast) {
+  const WheelTable table;
+  const auto at_reference = [&](const std::string& lugs) {
+    const test::TemporaryFile rover{
+        "{name: lugs, mass_kg: 80, gravity_m_s2: 9.81, wheelbase_m: 1.2, track_m: 1.0, clearance_m: 0.3, "
+        "centre_of_mass_height_m: 0.4, max_pitch_deg: 25, max_roll_deg: 25, max_torque_Nm: 45, "
+        "max_speed_mps: 0.1, "
+        "hotel_power_W: 50, steering: skid, wheels: {count: 6, radius_m: 0.15, width_m: 0.15" +
+            lugs + "}}\n",
+        ".yaml"};
+    return assessTable({.table = table.path(), .rover = rover.path(), .noise = 0.01, .extrapolate = true}, {})
+        .rows.front()
+        .forecast->at_reference.value;
+  };
+  EXPECT_EQ(at_reference(", grouser_height_m: 0.02, grouser_count: 24, lug_thrust: 1.0"), at_reference(""));
+}
+
 TEST(Assessment, UnknownFormulaAndInvertedThresholdsAreRejected) {
   const WheelTable table;
   EXPECT_REFUSED(assessTable({.table = table.path(), .formula = "no-such"}, {}), std::invalid_argument,
