@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -32,32 +33,17 @@ struct RankedCategory {
   double probability = 0.0;
 };
 
-/// Category of ground by its pull against the slope and by its sinkage (thesis 3.5).
-class GroundCategory {
- public:
-  GroundCategory(const TravelPolicy& policy, const terramech::Rover& rover);
-
-  /// Returns the category of ground of a known pull over load and sinkage over radius at a gradient.
-  terramech::Category at(double pull, double sinkage, double gradient) const;
-  /// Returns the category of ground with the mean strength of `belief` at a gradient, and the probability of
-  /// that category under the uncertainty of `belief`.
-  RankedCategory ranked(const GroundBelief& belief, double gradient) const;
-
- private:
-  // `low` is the DP/W below which a slope is dangerous, and `high` is the DP/W above which it is safe.
-  struct Edges {
-    double low, high;
-  };
-  Edges edges(double gradient) const noexcept;
-
-  double tan_margin_, threshold_, critical_;
-};
-
 /// Permissions, weights and limits of the rover by which ground is priced.
 struct GroundRules {
   TravelPolicy policy;
   terramech::Rover rover;
-  GroundCategory category{policy, rover};
+  double tan_margin = std::tan(policy.slope_margin_rad);
+
+  /// Returns the limits of the categories of ground at a gradient, by its pull against the slope and by its
+  /// sinkage (thesis 3.5).
+  terramech::CategoryThresholds thresholds(double gradient) const noexcept;
+  /// Returns the category of ground with the mean strength of `belief` at a gradient.
+  terramech::Category category(const GroundBelief& belief, double gradient) const;
 };
 
 /// A class to which ground may belong, and the strength of the ground relative to that class.
@@ -235,7 +221,10 @@ class GroundModel {
   /// the probability of that category under the uncertainty of `belief`.
   RankedCategory category(const GroundBelief& belief, double gradient) const {
     if (parts_.stated) return {terramech::Category::Safe, 1.0};
-    return rules_->category.ranked(belief, gradient);
+    const terramech::Category mean = rules_->category(belief, gradient);
+    return {mean,
+            terramech::categoryProbability({belief.pull, belief.sinkage},
+                                           rules_->thresholds(gradient))[static_cast<std::size_t>(mean)]};
   }
 
   /// Returns the limits of pitch and roll as gradients, and the tipping geometry of the rover.
