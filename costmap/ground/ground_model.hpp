@@ -77,8 +77,6 @@ class GroundStates final : public TravelStates {
   double steepest(double gradient) const override;
   TravelForecast forecast(const terramech::Gradient& gradient) const override;
 
-  /// Returns the state on a slope without gradient across, interpolated between nodes.
-  TravelState onClimb(double gradient) const;
   std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const override;
 
  private:
@@ -214,7 +212,7 @@ class GroundModel {
 
   /// Returns the travel state on a gradient along the heading (rise over run) without cross slope.
   TravelState state(int class_index, const GroundBelief& belief, double gradient) const {
-    return states(class_index, class_index, belief)->onClimb(gradient);
+    return states(class_index, class_index, belief)->state({.along = gradient});
   }
 
   /// Returns the category of ground with the mean strength of `belief` at a gradient along the heading, and

@@ -114,21 +114,6 @@ double probabilityBelow(double bound, double std) {
   return std > 1e-6 ? terramech::normalProbability(bound / std) : 0.0;
 }
 
-// Interpolates between the four nodes around a slope; `at(row, bin, weight)` is called for each.
-template <typename At>
-void forNodesAround(const terramech::Gradient& gradient, At at) {
-  const double place = std::clamp(gradient.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0,
-                                  TravelCurve::kLastPlace);
-  const auto bin = TravelCurve::between(place),
-             row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
-  for (const int up : {0, 1})
-    for (const int on : {0, 1}) {
-      const double weight = static_cast<double>((up == 1 ? row.share : 1.0F - row.share) *
-                                                (on == 1 ? bin.share : 1.0F - bin.share));
-      if (weight > 0.0) at(row.whole + up, bin.whole + on, weight);
-    }
-}
-
 }  // namespace
 
 GroundStates::GroundStates(std::shared_ptr<const GroundRules> rules, std::vector<StrengthOfClass> classes,
@@ -249,18 +234,11 @@ bool GroundStates::isAllowed(std::size_t node) const {
 
 TravelState GroundStates::at(int row, int bin) const {
   TravelState state = node(row, bin).state;
-  for (int r = std::min(row, rows() - 1); r >= 0 && state.refusal == Refusal::None; --r) {
-    if (isAllowed(static_cast<std::size_t>(r * TravelCurve::kBins + bin))) break;
-    state.refusal = node(r, bin).state.refusal;
-  }
+  const auto index = [&](int r) { return static_cast<std::size_t>(r * TravelCurve::kBins + bin); };
+  for (int r = std::min(row, rows() - 1); r > 0 && state.refusal == Refusal::None && !isAllowed(index(r));
+       --r)
+    state.refusal = node(r - 1, bin).state.refusal;
   return state;
-}
-
-TravelState GroundStates::onClimb(double gradient) const {
-  const auto place = TravelCurve::between(std::clamp(
-      gradient * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0, TravelCurve::kLastPlace));
-  const TravelState here = node(0, place.whole).state;
-  return place.share > 0.0F ? between(here, node(0, place.whole + 1).state, place.share) : here;
 }
 
 TravelCurve GroundStates::curve(const CostWeights& weights) const {
@@ -279,7 +257,7 @@ TravelCurve GroundStates::curve(const CostWeights& weights) const {
 SlopeHold GroundStates::hold(const terramech::Gradient& gradient) const {
   SlopeHold out{0.0, 0.0, 0.0};
   const StrengthOfClass& of = classes_.front();
-  forNodesAround(gradient, [&](int row, int bin, double weight) {
+  TravelCurve::forNodesAround(gradient, [&](int row, int bin, double weight) {
     const StrengthColumn* column = of.lattice->contains(bin) ? &of.lattice->node(row, bin) : nullptr;
     const double excess = column ? of.strength.value - static_cast<double>(column->least) : -1.0;
     const auto add = [&](double& to, double value) { to += weight * value; };
@@ -307,7 +285,7 @@ double GroundStates::steepest(double gradient) const {
 TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const {
   TravelForecast out{.fails_below = 0.0};
   const StrengthOfClass& of = classes_.front();
-  forNodesAround(gradient, [&](int row, int bin, double weight) {
+  TravelCurve::forNodesAround(gradient, [&](int row, int bin, double weight) {
     if (!of.lattice->contains(bin)) return;
     const StrengthColumn& column = of.lattice->node(row, bin);
     const double reserve = of.strength.value - static_cast<double>(column.least);

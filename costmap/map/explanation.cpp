@@ -162,15 +162,10 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
       {"swath_sinkage_over_radius", published->sinkage.value, published->sinkage.std, swath, ""});
 }
 
-terramech::Gradient seenBy(CellCode code, const Direction& heading) {
-  return {code.dzDx() * heading.x + code.dzDy() * heading.y,
-          code.dzDy() * heading.x - code.dzDx() * heading.y};
-}
-
 void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
   const auto grid = map.published();
   const CellCode code = grid->at(cell);
-  const auto [along, across] = seenBy(code, heading);
+  const auto [along, across] = gradientOf(code, heading);
   const double margin = map.model().parts().policy.slope_margin_rad;
   const TravelState state = grid->cost().detail(code, heading);
   const std::string asks = "slope along the heading";
@@ -233,7 +228,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   }
   // Uses the cost and the gradient that planners read.
   const CellCode code = map.published()->at(cell);
-  const double along = seenBy(code, heading).along, climb = map.published()->cost().climb(code, heading);
+  const double along = gradientOf(code, heading).along, climb = map.published()->cost().climb(code, heading);
   const TravelState state = map.published()->cost().detail(code, heading);
   const RankedCategory here = judged(map.model(), *ground, state, climb);
   if (asked) out.category = here.category;

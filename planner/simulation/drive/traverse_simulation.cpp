@@ -326,7 +326,7 @@ class Drive {
   }
   double gradient(const Direction& heading) const {
     const costmap::CellCode code = ground();
-    return code.dzDx() * heading.x + code.dzDy() * heading.y;
+    return gradientOf(code, heading).along;
   }
   Motion motion(const Direction& heading, double dug_m) const {
     return {.place = here_,
