@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include <talus/costmap/ground/ground_model.hpp>
+#include <talus/terramech/mobility/wheel_forces_table.hpp>
 #include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::costmap {
@@ -304,6 +306,7 @@ TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const
 
 namespace {
 
+using terramech::RefinedModel;
 using terramech::Soil;
 using terramech::SoilDeviation;
 
@@ -316,94 +319,77 @@ constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 7> kFie
      {&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m},
      {&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent}}};
 
-// Step of the central difference, in standard deviations: a half keeps parameters near their bounds in range.
-constexpr double kStep = 0.5;
+// Uncertain parameters of a model: each function adds a change to its parameter and returns the new value.
+struct UncertainParameters {
+  std::vector<std::function<double(RefinedModel&, double)>> add;
+  std::vector<double> covariance;  // row-major
+};
 
-// Standard deviation of the exponent of underGravity(): ours.
-constexpr double kGravityExponentStd = 0.5;
-
-double pullOf(const Soil& soil, const terramech::Rover& rover) {
-  return terramech::mobilityReference(soil, rover).drawbar_pull_over_load;
-}
-
-bool isStiffer(const Soil& tested, const terramech::Rover& rover) {
-  return tested.test_gravity_m_s2 > rover.gravity_m_s2;
-}
-
-// The soil on the rover's body for a gravity exponent lower by one standard deviation.
-Soil lessAffected(const Soil& tested, const terramech::Rover& rover) {
-  return underGravity(tested, rover.gravity_m_s2, 1.0 - kGravityExponentStd);
-}
-
-// Converts the prior to the gravity of the rover.
-terramech::SoilPrior onBody(terramech::SoilPrior prior, const terramech::Rover& rover) {
-  if (!isStiffer(prior.mean, rover)) return prior;
-  const double width = rover.wheel.width_m, tested = sinkageModulus(prior.mean, width);
-  prior.mean = underGravity(prior.mean, rover.gravity_m_s2);
-  const double factor = sinkageModulus(prior.mean, width) / tested;
-  prior.deviation.cohesion_Pa *= factor;
-  prior.deviation.cohesive_modulus *= factor;
-  prior.deviation.frictional_modulus *= factor;
-  return prior;
+GroundClass classOf(int number, const RefinedModel& tested, const UncertainParameters& parameters,
+                    const terramech::Rover& rover) {
+  // Step of the central difference, in standard deviations: a half keeps parameters near their bounds in range.
+  constexpr double kStep = 0.5;
+  constexpr double kGravityExponentStd = 0.5;  // of underGravity(): ours
+  const auto pullOf = [&](RefinedModel model, double exponent = 1.0) {
+    model.soil = underGravity(model.soil, rover.gravity_m_s2, exponent);
+    return terramech::mobilityReference(model, rover).drawbar_pull_over_load;
+  };
+  GroundClass ground;
+  ground.number = number;
+  ground.soil = underGravity(tested.soil, rover.gravity_m_s2);
+  ground.effects = terramech::withoutSensors(tested).effects;
+  const std::size_t count = parameters.add.size();
+  std::vector<double> slope;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double std = std::sqrt(std::max(0.0, parameters.covariance[k * count + k]));
+    RefinedModel more = tested, less = tested;
+    try {
+      const double width = parameters.add[k](more, kStep * std) - parameters.add[k](less, -kStep * std);
+      slope.push_back(width > 0.0 ? (pullOf(more) - pullOf(less)) / width : 0.0);
+    } catch (const std::invalid_argument& e) {
+      std::ostringstream text;
+      text << e.what() << "; it is the mean with half of its std " << std;
+      throw std::invalid_argument(text.str());
+    }
+  }
+  double variance = 0.0;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j)
+      variance += slope[i] * parameters.covariance[i * count + j] * slope[j];
+  if (variance > 0.0) ground.mean_std = std::sqrt(variance);
+  if (tested.soil.test_gravity_m_s2 > rover.gravity_m_s2)
+    ground.mean_std = std::hypot(ground.mean_std, pullOf(tested, 1.0 - kGravityExponentStd) - pullOf(tested));
+  return ground;
 }
 
 }  // namespace
 
-GroundClass groundClass(int number, const terramech::SoilPrior& tested, const terramech::Rover& rover) {
-  const terramech::SoilPrior prior = onBody(tested, rover);
-  GroundClass ground;
-  ground.number = number;
-  ground.soil = prior.mean;
-  ground.rut_stiffness_std = prior.deviation.rut_stiffness;
-  double variance = 0.0;
-  for (const auto& [value, deviation] : kFields) {
-    const double std = prior.deviation.*deviation;
-    if (std <= 0.0) continue;
-    Soil more = prior.mean, less = prior.mean;
-    more.*value += kStep * std;
-    less.*value = std::max(less.*value - kStep * std, 1e-3 * prior.mean.*value);
-    try {
-      const double slope = (pullOf(more, rover) - pullOf(less, rover)) / (more.*value - less.*value);
-      variance += slope * std * slope * std;
-    } catch (const std::invalid_argument& e) {
-      std::ostringstream text;
-      text << e.what() << "; it is the mean " << prior.mean.*value << " with half of its std " << std;
-      throw std::invalid_argument(text.str());
-    }
+GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover) {
+  UncertainParameters parameters;
+  parameters.covariance.resize(kFields.size() * kFields.size());
+  for (std::size_t k = 0; k < kFields.size(); ++k) {
+    const auto [field, deviation] = kFields[k];
+    parameters.covariance[k * kFields.size() + k] = std::pow(prior.deviation.*deviation, 2);
+    parameters.add.emplace_back([field](RefinedModel& model, double change) {
+      double& value = model.soil.*field;
+      return value = std::max(value + change, 1e-3 * value);
+    });
   }
-  if (variance > 0.0) ground.mean_std = std::sqrt(variance);
-  if (isStiffer(tested.mean, rover))
-    ground.mean_std = std::hypot(ground.mean_std,
-                                 pullOf(lessAffected(tested.mean, rover), rover) - pullOf(prior.mean, rover));
+  GroundClass ground = classOf(number, terramech::onSoil(prior.mean), parameters, rover);
+  ground.rut_stiffness_std = prior.deviation.rut_stiffness;
   return ground;
 }
 
-GroundClass groundClass(int number, const terramech::RefinedModel& tested, const terramech::Rover& rover) {
-  terramech::RefinedModel model = tested;
-  model.soil = underGravity(tested.soil, rover.gravity_m_s2);
-  const auto pull = [&](const terramech::RefinedModel& m) {
-    return terramech::mobilityReference(m, rover).drawbar_pull_over_load;
-  };
-  GroundClass ground;
-  ground.number = number;
-  ground.soil = model.soil;
-  ground.effects = terramech::withoutSensors(model).effects;
-  const double here = pull(model);
-  const std::size_t count = model.covariance.empty() ? 0 : model.fitted.size();
-  std::vector<double> slope;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double std = std::sqrt(std::max(0.0, model.covariance[k * count + k]));
-    terramech::RefinedModel moved = model;
-    terramech::setValue(moved, model.fitted[k], terramech::value(model, model.fitted[k]) + 0.1 * std);
-    slope.push_back(std > 0.0 ? (pull(moved) - here) / (0.1 * std) : 0.0);
-  }
-  double variance = 0.0;
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < count; ++j) variance += slope[i] * model.covariance[i * count + j] * slope[j];
-  if (variance > 0.0) ground.mean_std = std::sqrt(variance);
-  model.soil = lessAffected(tested.soil, rover);
-  if (isStiffer(tested.soil, rover)) ground.mean_std = std::hypot(ground.mean_std, pull(model) - here);
-  return ground;
+GroundClass groundClass(int number, const RefinedModel& model, const terramech::Rover& rover) {
+  UncertainParameters parameters{.add = {}, .covariance = model.covariance};
+  if (!model.covariance.empty())
+    for (const terramech::FittedParameter& p : model.fitted)
+      parameters.add.emplace_back([p](RefinedModel& moved, double change) {
+        const double next = terramech::value(moved, p) + change;
+        terramech::setValue(moved, p, next);
+        return next;
+      });
+  return classOf(number, model, parameters, rover);
 }
 
 }  // namespace talus::costmap

@@ -266,7 +266,9 @@ void readIn(const TraversabilityMap& map, Sampled& at) {
     const auto slip = static_cast<double>(grid->cost().detail(code, heading).slip);
     const double share = steady(slip).torque_over_load_radius /
                          map.model().reference(at.class_index, false).torque_over_load_radius;
-    const double rise = (steady(slip + noise.slip).gradient - steady(slip - noise.slip).gradient) / 2.0;
+    const double rise = (steady(slip + noise.slip).drawbar_pull_over_load -
+                         steady(slip - noise.slip).drawbar_pull_over_load) /
+                        2.0;
     const double error = std::hypot(noise.model_pull, std::hypot(noise.gradient, rise) / share);
     if (share < kLeastShare || error >= at.error) continue;
     at.error = error;

@@ -16,56 +16,28 @@
 
 namespace talus::terramech {
 
-namespace {
-
-void require(const Rover& rover, const MobilityOptions& options) {
+SteadyWheel mobilityReference(const RefinedModel& model, const Rover& rover, int pass) {
+  requireForces(model);
   validate(rover);
-  const RangeCheck check{"mobility options"};
-  check.within("reference_slip", options.reference_slip, {1e-6, 1.0 - 1e-6});
-  check.atLeast("pass", options.pass, 1.0);
-}
-
-MobilityReference referenceBy(const WheelForces& f, const Rover& rover, double slip) {
+  RangeCheck{"wheel"}.atLeast("pass", pass, 1.0);
+  const RefinedModel ground = withoutSensors(model);
   const double load_N = wheelLoad_N(rover), radius_m = rover.wheel.radius_m;
-  return {slip, f.drawbar_pull_N / load_N, std::min(f.sinkage_m / radius_m, 1.0),
-          f.torque_Nm / (load_N * radius_m)};
-}
-
-// Forces of a wheel; sunk to its axle if the soil cannot carry it.
-WheelForces forcesOn(const Soil& soil, const Rover& rover, double slip) {
-  const WheelOperation operation{.load_N = wheelLoad_N(rover), .slip = slip};
-  try {
-    return equilibrium(soil, rover.wheel, operation);
-  } catch (const std::domain_error&) {
-    return forcesAtEntry(soil, rover.wheel, {.slip = slip}, 0.5 * std::numbers::pi).forces;
+  const auto over = [&](const auto& f) {
+    return SteadyWheel{f.drawbar_pull_N / load_N, std::min(f.sinkage_m / radius_m, 1.0),
+                       f.torque_Nm / (load_N * radius_m)};
+  };
+  if (!ground.effects.empty()) {
+    WheelState state = steadyWheel(rover, load_N, kReferenceSlip);
+    state.pass_index = pass;
+    state.slope_rad = 0.0;
+    return over(predict(ground, state));
   }
-}
-
-}  // namespace
-
-MobilityReference mobilityReference(const Soil& soil, const Rover& rover, const MobilityOptions& options) {
-  validate(soil);
-  require(rover, options);
-  return referenceBy(forcesOn(soil, rover, options.reference_slip), rover, options.reference_slip);
-}
-
-MobilityReference mobilityReference(const RefinedModel& model, const Rover& rover,
-                                    const MobilityOptions& options) {
-  validate(model.soil);
-  if (model.base == BaseModel::LinearFormula)
-    throw std::invalid_argument(
-        "model 'linear-formula' computes drawbar pull from a measured torque and cannot predict slip on a "
-        "slope; trace the data with model: wong-reece");
-  require(rover, options);
-  WheelState state = steadyWheel(rover, wheelLoad_N(rover), options.reference_slip);
-  state.pass_index = options.pass;
-  state.slope_rad = 0.0;
-  const Reading reading = predict(withoutSensors(model), state);
-  return referenceBy({.sinkage_m = reading.sinkage_m,
-                      .entry_angle_rad = 0.0,
-                      .torque_Nm = reading.torque_Nm,
-                      .drawbar_pull_N = reading.drawbar_pull_N},
-                     rover, options.reference_slip);
+  try {
+    return over(equilibrium(ground.soil, rover.wheel, {.load_N = load_N, .slip = kReferenceSlip}));
+  } catch (const std::domain_error&) {  // sunk to its axle
+    return over(
+        forcesAtEntry(ground.soil, rover.wheel, {.slip = kReferenceSlip}, 0.5 * std::numbers::pi).forces);
+  }
 }
 
 namespace {
@@ -111,11 +83,7 @@ class SlopeEquilibrium::Solver {
   SlopeState at(const Gradient& gradient, double strength) const noexcept;
   double leastStrength(const Gradient& gradient, double near) const noexcept;
   std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state, double strength) const;
-  WheelOnSlope wheel(const WheelMotion& motion, double in_rut, double strength) const noexcept;
-  WheelOnSlope evenWheel(const WheelMotion& motion, bool in_rut) const noexcept {
-    return wheel({motion.load_N * wheelLoad_N(rover_), motion.slip, motion.slip_angle_rad},
-                 in_rut ? 1.0 : 0.0, 1.0);
-  }
+  SteadyWheel evenWheel(WheelMotion motion, bool in_rut) const noexcept;
   const RoverStance& stance() const { return stance_; }
   Solver withoutRuts() const {
     Solver fresh = *this;
@@ -473,27 +441,27 @@ std::vector<WheelOnSlope> SlopeEquilibrium::Solver::wheels(const Gradient& gradi
   for (int k = 0; k < stance_.wheels(); ++k) {
     WheelMotion motion = motionOf(k, u);
     motion.load_N = shares[static_cast<std::size_t>(k)] * normal;
-    all.push_back(wheel(motion, rutOf(k / 2, turn).value, strength));
+    const WheelRatios f = forces(motion, rutOf(k / 2, turn), strength);
+    const double r = rover_.wheel.radius_m, load_N = motion.load_N;
+    all.push_back({load_N, motion.slip, motion.slip_angle_rad, f.value[kSinkageRatio] * r,
+                   f.value[kTorqueRatio] * load_N * r, f.value[kPullRatio] * load_N,
+                   f.value[kSideRatio] * load_N});
   }
   return all;
 }
 
-WheelOnSlope SlopeEquilibrium::Solver::wheel(const WheelMotion& motion, double in_rut,
-                                             double strength) const noexcept {
-  const WheelRatios f = forces(motion, {.value = in_rut}, strength);
-  const double r = rover_.wheel.radius_m, load_N = motion.load_N;
-  return {load_N,
-          motion.slip,
-          motion.slip_angle_rad,
-          f.value[kSinkageRatio] * r,
-          f.value[kTorqueRatio] * load_N * r,
-          f.value[kPullRatio] * load_N,
-          f.value[kSideRatio] * load_N};
+SteadyWheel SlopeEquilibrium::Solver::evenWheel(WheelMotion motion, bool in_rut) const noexcept {
+  const auto under = [&](double load_N) {
+    motion.load_N = load_N;
+    return forces(motion, {.value = in_rut ? 1.0 : 0.0}, 1.0).value;
+  };
+  const double even_N = wheelLoad_N(rover_);
+  const auto f = under(even_N / std::hypot(1.0, under(even_N)[kPullRatio]));
+  return {f[kPullRatio], f[kSinkageRatio], f[kTorqueRatio], std::abs(f[kSideRatio])};
 }
 
 SlopeEquilibrium::SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options)
-    : solver_(std::make_shared<const Solver>(WheelForcesTable(soil, rover),
-                                             WheelForcesTable(rutted(soil), rover), rover, options)) {}
+    : SlopeEquilibrium(onSoil(soil), rover, options) {}
 
 SlopeEquilibrium::SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options)
     : solver_(std::make_shared<const Solver>(WheelForcesTable(model, rover, 1),
@@ -512,12 +480,8 @@ std::vector<WheelOnSlope> SlopeEquilibrium::wheels(const Gradient& gradient, con
   return solver_->wheels(gradient, state, strength);
 }
 
-WheelOnSlope SlopeEquilibrium::evenWheel(double slip, double slip_angle_rad, bool in_rut) const noexcept {
-  const auto onSlope = [&](double pull) {
-    return solver_->evenWheel({1.0 / std::hypot(1.0, pull), slip, slip_angle_rad}, in_rut);
-  };
-  const WheelOnSlope level = onSlope(0.0);
-  return onSlope(level.drawbar_pull_N / level.load_N);
+SteadyWheel SlopeEquilibrium::evenWheel(double slip, double slip_angle_rad, bool in_rut) const noexcept {
+  return solver_->evenWheel({.slip = slip, .slip_angle_rad = slip_angle_rad}, in_rut);
 }
 
 SlopeEquilibrium::SlopeEquilibrium(std::shared_ptr<const Solver> solver) : solver_(std::move(solver)) {}

@@ -9,34 +9,27 @@
 
 namespace talus::terramech {
 
-/// Wheel of a MobilityReference.
-struct MobilityOptions {
-  double reference_slip = 0.5;  ///< slip at which traversability is assessed, (0, 1) (thesis 3.5)
-  int pass = 1;                 ///< pass number of the wheel over its track, >= 1, for multipass effects
-};
-
-/// State of a wheel with load W and radius r at a given slip on level ground.
-struct MobilityReference {
-  double slip = 0.0;                     ///< the given slip [-]
-  double drawbar_pull_over_load = 0.0;   ///< drawbar pull over load, DP/W [-]
-  double sinkage_over_radius = 0.0;      ///< sinkage over radius, z/r [-]; 1: the soil cannot carry the wheel
+/// Quantities of a wheel with load W and radius r that drives at constant speed.
+struct SteadyWheel {
+  double drawbar_pull_over_load = 0.0;   ///< DP/W [-]; the gradient that an even wheel climbs
+  double sinkage_over_radius = 0.0;      ///< z/r [-]; 1: the soil cannot carry the wheel
   double torque_over_load_radius = 0.0;  ///< torque ratio T/(rW) [-]
+  double side_force_over_load = 0.0;     ///< side force that resists sideways motion, over load, >= 0 [-]
 };
 
-/// Return the state of a wheel of a rover at the reference slip, the input of categorise(). A model acts
-/// without its sensor errors; its effects act only if their covariates are known: speed, rim speed (the rover's
-/// maximum), pass and slope 0. Throw std::invalid_argument for a soil, rover or option out of range, and for the
-/// base model linear-formula, which needs a measured torque.
-MobilityReference mobilityReference(const Soil& soil, const Rover& rover,
-                                    const MobilityOptions& options = {});
-MobilityReference mobilityReference(const RefinedModel& model, const Rover& rover,
-                                    const MobilityOptions& options = {});
+/// Slip at which traversability is assessed (thesis 3.5) [-].
+inline constexpr double kReferenceSlip = 0.5;
+
+/// Returns the state of a wheel of a rover at the reference slip on level ground, the input of categorise(), on its
+/// pass >= 1 over the track. A model acts without its sensor errors; its effects act only if their covariates are
+/// known: speed, rim speed (the rover's maximum), pass and slope 0. Throws std::invalid_argument for a soil, rover
+/// or pass out of range, and for the base model linear-formula, which needs a measured torque.
+SteadyWheel mobilityReference(const RefinedModel& model, const Rover& rover, int pass = 1);
 
 /// Steady motion of a rover over an inclined plane in any direction: the slip and slip angle at which the
 /// wheel forces balance the weight.
 
 struct Planar;
-struct RefinedModel;
 
 /// Gradient (rise over horizontal run) of an inclined plane, relative to the direction of travel [-].
 struct Gradient {
@@ -152,8 +145,9 @@ class SlopeEquilibrium {
                                    double strength = 1.0) const;
 
   /// Returns the state of one wheel that carries an equal share of the weight straight up the slope that its
-  /// drawbar pull climbs, on fresh ground or in the rut of an equal wheel. The slip must be in [-1, 1] and the slip angle within 60 deg.
-  WheelOnSlope evenWheel(double slip, double slip_angle_rad, bool in_rut = false) const noexcept;
+  /// drawbar pull climbs, on fresh ground or in the rut of an equal wheel. The slip must be in [-1, 1] and the slip
+  /// angle within 60 deg.
+  SteadyWheel evenWheel(double slip, double slip_angle_rad, bool in_rut = false) const noexcept;
 
   /// Returns true if the centre of mass is on the longitudinal axis of the rover.
   bool symmetric() const noexcept;
