@@ -43,20 +43,15 @@ SteadyWheel mobilityReference(const RefinedModel& model, const Rover& rover, int
 namespace {
 
 constexpr double kSunk = 0.999;  // sinkage over radius, z/r, of a wheel sunk to its axle
-constexpr double kMostStrength = SlopeEquilibrium::kMostStrength, kStrengthError = 5e-4;
+constexpr double kMostStrength = SlopeEquilibrium::kMostStrength, kStrengthError = 5e-4,
+                 kMostSlip = SlopeEquilibrium::kMostSlip,
+                 kMostSlipAngle_rad = SlopeEquilibrium::kMostSlipAngle_rad;
 
 /// Returns the force components along and across the direction of travel, for a wheel plane at angle beta to
 /// the right of that direction.
 Planar turned(double along_wheel, double across_wheel, double beta) {
   const double c = std::cos(beta), s = std::sin(beta);
   return {along_wheel * c + across_wheel * s, across_wheel * c - along_wheel * s};
-}
-
-const SlopeOptions& checked(const SlopeOptions& options) {
-  const RangeCheck check{"slope options"};
-  check.within("max_slip", options.max_slip, {1e-6, 1.0});
-  check.within("max_slip_angle_rad", options.max_slip_angle_rad, {1e-6, 1.04});
-  return options;
 }
 
 }  // namespace
@@ -68,12 +63,8 @@ Planar demandOf(const Gradient& g) noexcept {
 
 class SlopeEquilibrium::Solver {
  public:
-  Solver(WheelForcesTable fresh, WheelForcesTable rut, const Rover& rover, const SlopeOptions& options)
-      : fresh_(std::move(fresh)),
-        rut_(std::move(rut)),
-        rover_(rover),
-        options_(checked(options)),
-        stance_(rover) {
+  Solver(WheelForcesTable fresh, WheelForcesTable rut, const Rover& rover)
+      : fresh_(std::move(fresh)), rut_(std::move(rut)), rover_(rover), stance_(rover) {
     for (std::size_t a = 0; a < even_in_rut_.size(); ++a)
       for (int axle = 0; axle < stance_.wheels() / 2; ++axle)
         even_in_rut_[a] +=
@@ -87,7 +78,7 @@ class SlopeEquilibrium::Solver {
   const RoverStance& stance() const { return stance_; }
   Solver withoutRuts() const {
     Solver fresh = *this;
-    fresh.options_.ruts = false;
+    fresh.ruts_ = false;
     fresh.even_in_rut_.fill(0.0);
     return fresh;
   }
@@ -137,7 +128,7 @@ class SlopeEquilibrium::Solver {
 
   WheelForcesTable fresh_, rut_;
   Rover rover_;
-  SlopeOptions options_;
+  bool ruts_ = true;  // false: later axles roll on fresh ground, too
   RoverStance stance_;
   std::array<double, WheelForcesTable::kAngles> even_in_rut_{};  // mean share of all wheels, by angle node
 };
@@ -184,7 +175,7 @@ WheelMotion SlopeEquilibrium::Solver::motionOf(int wheel, const Unknowns& u) con
 /// The wheels of an axle at the distance d behind the front axle roll beside its ruts by d sin(body angle).
 SlopeEquilibrium::Solver::RutShare SlopeEquilibrium::Solver::rutOf(int axle,
                                                                    double angle_rad) const noexcept {
-  if (axle == 0 || !options_.ruts) return {};
+  if (axle == 0 || !ruts_) return {};
   if (rover_.steering == Steering::AllWheel) return {.value = 1.0};
   const double behind_m = stance_.position_m(0).x - stance_.position_m(2 * axle).x,
                widths = behind_m / rover_.wheel.width_m, off = widths * std::sin(angle_rad),
@@ -291,7 +282,7 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Ground& grou
       reached = true;
       break;
     }
-    if (a == 0) out.pulls = reached && slip <= options_.max_slip;
+    if (a == 0) out.pulls = reached && slip <= kMostSlip;
     if (reached) {
       if (!out.found && hold >= wanted) {
         const double share = last && hold > last_side ? (wanted - last_side) / (hold - last_side) : 1.0;
@@ -303,7 +294,7 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Ground& grou
     }
     if (!out.found && last && !reached) {
       // The pull suffices up to an angle within this step.
-      out.start.slip = 0.5 * (last_slip + options_.max_slip);
+      out.start.slip = 0.5 * (last_slip + kMostSlip);
       out.start.angle_rad = 0.0 - side * (beta - 0.5 * WheelForcesTable::kAngleStep_rad);
       out.found = true;
     }
@@ -393,14 +384,14 @@ double SlopeEquilibrium::Solver::leastStrength(const Gradient& gradient, double 
 
 bool SlopeEquilibrium::Solver::isSteady(const Unknowns& u) const noexcept {
   const double difference = rover_.steering == Steering::Skid ? 0.5 * std::abs(u.difference) : 0.0;
-  return u.slip + difference <= options_.max_slip && std::abs(u.angle_rad) <= options_.max_slip_angle_rad;
+  return u.slip + difference <= kMostSlip && std::abs(u.angle_rad) <= kMostSlipAngle_rad;
 }
 
 SlopeFailure SlopeEquilibrium::Solver::gripOf(const SlopeState& state, const Unknowns& u) const noexcept {
   if (state.sinkage_m > kSunk * rover_.wheel.radius_m || state.sinkage_m >= rover_.clearance_m)
     return SlopeFailure::Sinks;
-  if (state.slip + 0.5 * std::abs(state.slip_difference) > options_.max_slip) return SlopeFailure::CannotPull;
-  if (std::abs(u.angle_rad) > options_.max_slip_angle_rad) return SlopeFailure::Slides;
+  if (state.slip + 0.5 * std::abs(state.slip_difference) > kMostSlip) return SlopeFailure::CannotPull;
+  if (std::abs(u.angle_rad) > kMostSlipAngle_rad) return SlopeFailure::Slides;
   if (std::abs(state.torque_Nm) > rover_.max_torque_Nm) return SlopeFailure::Torque;
   return SlopeFailure::None;
 }
@@ -460,12 +451,12 @@ SteadyWheel SlopeEquilibrium::Solver::evenWheel(WheelMotion motion, bool in_rut)
   return {f[kPullRatio], f[kSinkageRatio], f[kTorqueRatio], std::abs(f[kSideRatio])};
 }
 
-SlopeEquilibrium::SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options)
-    : SlopeEquilibrium(onSoil(soil), rover, options) {}
+SlopeEquilibrium::SlopeEquilibrium(const Soil& soil, const Rover& rover)
+    : SlopeEquilibrium(onSoil(soil), rover) {}
 
-SlopeEquilibrium::SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options)
+SlopeEquilibrium::SlopeEquilibrium(const RefinedModel& model, const Rover& rover)
     : solver_(std::make_shared<const Solver>(WheelForcesTable(model, rover, 1),
-                                             WheelForcesTable(rutted(model), rover, 2), rover, options)) {}
+                                             WheelForcesTable(rutted(model), rover, 2), rover)) {}
 
 SlopeState SlopeEquilibrium::at(const Gradient& gradient, double strength) const noexcept {
   return solver_->at(gradient, strength);

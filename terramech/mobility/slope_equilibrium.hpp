@@ -42,22 +42,12 @@ struct Gradient {
 /// a^2 + c^2) / sqrt(1 + a^2), and the component y across is c / sqrt(1 + a^2).
 Planar demandOf(const Gradient& gradient) noexcept;
 
-/// Limits of slip and slip angle for a SlopeEquilibrium.
-struct SlopeOptions {
-  /// Slip above which the rover is immobilised, (0, 1] (ours).
-  double max_slip = 0.8;
-  /// Slip angle [rad] above which the rover slides, (0, 1.04]. The wheel model was compared with data up to
-  /// 45 deg (ours).
-  double max_slip_angle_rad = 0.7854;
-  bool ruts = true;  ///< false: later axles roll on fresh ground, too
-};
-
 /// Reason why a rover has no steady motion over a plane.
 enum class SlopeFailure {
   None,        ///< no failure: the rover has a steady motion
   Tips,        ///< the vertical through the centre of mass passes an edge of the outermost wheels
   Sinks,       ///< a wheel sinks to its axle, or by the rover's ground clearance
-  CannotPull,  ///< the drawbar pull is insufficient uphill at any slip up to max_slip
+  CannotPull,  ///< the drawbar pull is insufficient uphill at any slip up to kMostSlip
   Slides,      ///< the wheel forces do not hold the rover downhill or across the slope
   Torque       ///< a wheel needs a torque above max_torque_Nm
 };
@@ -123,11 +113,14 @@ struct WheelOnSlope {
 /// Pitch and roll limits of the rover are not checked. Immutable, cheap to copy, thread-safe.
 class SlopeEquilibrium {
  public:
-  /// Prepares the solver for a soil, or for a wheel model with effects. Throws std::invalid_argument if soil,
-  /// rover or an option is outside its range.
-  SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options = {});
-  SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options = {});
+  /// Prepares the solver for a soil, or for a wheel model with effects. Throws std::invalid_argument if soil or
+  /// rover is outside its range.
+  SlopeEquilibrium(const Soil& soil, const Rover& rover);
+  SlopeEquilibrium(const RefinedModel& model, const Rover& rover);
 
+  static constexpr double kMostSlip = 0.8;  ///< slip above which the rover is immobilised (ours) [-]
+  /// Slip angle above which the rover slides: the wheel model was compared with data up to 45 deg (ours).
+  static constexpr double kMostSlipAngle_rad = 0.7854;
   static constexpr double kMostStrength = 5.0;  ///< greatest result of leastStrength() [-]
 
   /// Returns the steady motion over a plane with this gradient on ground of the given strength >= 0, or the
@@ -152,7 +145,7 @@ class SlopeEquilibrium {
   /// Returns true if the centre of mass is on the longitudinal axis of the rover.
   bool symmetric() const noexcept;
 
-  /// Returns a copy with SlopeOptions::ruts = false.
+  /// Returns a copy whose later axles roll on fresh ground, too.
   SlopeEquilibrium withoutRuts() const;
 
  private:

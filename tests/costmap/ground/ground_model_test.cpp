@@ -262,7 +262,7 @@ TEST(GroundModel, MaximumSlopeOfRandomSoilsIsNotOverestimated) {
           std::max(0.15, soil.friction_angle_rad + prior.deviation.friction_angle_rad * normal(random));
       soil.shear_modulus_m =
           std::max(0.004, soil.shear_modulus_m + prior.deviation.shear_modulus_m * normal(random));
-      const terramech::SlopeEquilibrium own(soil, parts.rover, {.ruts = false});
+      const auto own = terramech::SlopeEquilibrium(soil, parts.rover).withoutRuts();
       const auto reference = terramech::mobilityReference(terramech::onSoil(soil), parts.rover);
       GroundBelief belief = model.prior(0);
       if (belief.pull.value - reference.drawbar_pull_over_load < 0.03) continue;

@@ -327,7 +327,7 @@ TEST(SlopeEquilibrium, WheelForcesBalanceTheWeight) {
   for (const Steering steering : kSteerings) {
     Rover r = boxRover(steering);
     r.centre_of_mass_ahead_m = 0.06;
-    const SlopeEquilibrium equilibrium{coarseSand(), r, {.ruts = false}};
+    const auto equilibrium = SlopeEquilibrium{coarseSand(), r}.withoutRuts();
     const double weight = r.mass_kg * r.gravity_m_s2;
     int held = 0;
     for (double a = -0.35; a <= 0.36; a += 0.07)
@@ -487,7 +487,7 @@ bool anyHolds(const Soil& soil, const Rover& r, const Gradient& g) {
 TEST(SlopeEquilibrium, FindsAnEquilibriumWheneverOneExists) {
   Rover r = boxRover();
   r.centre_of_mass_height_m = 0.0;
-  const SlopeEquilibrium equilibrium{coarseSand(), r, {.ruts = false}};
+  const auto equilibrium = SlopeEquilibrium{coarseSand(), r}.withoutRuts();
   std::mt19937_64 engine{3};
   std::uniform_real_distribution<double> any{-0.7, 0.7};
   int held = 0, none = 0;
@@ -535,7 +535,7 @@ TEST(SlopeEquilibrium, ReportsTheCauseOfFailure) {
 }
 
 TEST(SlopeEquilibrium, LockedRoverIsStableDownhillUpToTheSlidingSlope) {
-  const SlopeEquilibrium equilibrium{coarseSand(), boxRover(), {.ruts = false}};
+  const auto equilibrium = SlopeEquilibrium{coarseSand(), boxRover()}.withoutRuts();
   const double even = wheelLoad_N(boxRover());
   const WheelForces locked =
       terramech::equilibrium(coarseSand(), boxRover().wheel, {.load_N = even, .slip = -1.0});
