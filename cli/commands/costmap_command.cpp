@@ -34,7 +34,9 @@ struct CostmapOptions {
 void bind(CLI::App& command, CostmapOptions& options) {
   addGroundOptions(command, options.ground);
   addOutput(command, "-o,--output", options.output, "traversability map to write")->type_name("MAP.ot");
-  addOutput(command, "--geotiff", options.geotiff, "GeoTIFF of layers to write")->type_name("FILE.tif");
+  addOutput(command, "--geotiff", options.geotiff,
+            "GeoTIFF of layers to write, and FILE.qml beside it: the style of allowed_headings for QGIS")
+      ->type_name("FILE.tif");
   addOutput(command, "--categories", options.categories,
             "GeoTIFF of the categories to write, with names, colours and overviews, and FILE.qml beside it: "
             "the style that QGIS reads by itself")
@@ -73,11 +75,7 @@ void writeOctovis(const costmap::TraversabilityMap& map, const std::string& path
 void writeFiles(const CostmapOptions& options, const costmap::TraversabilityMap& map,
                 const Context& context) {
   if (!options.output.empty()) costmap::writeMap(map, options.output);
-  if (!options.geotiff.empty()) {
-    const auto& georeference = map.elevation().georeference;
-    maps::writeGeoTiff({.path = options.geotiff, .georeference = georeference ? &*georeference : nullptr},
-                       siteLayers(map, context.workers()));
-  }
+  if (!options.geotiff.empty()) writeLayers(map, options.geotiff, context.workers());
   if (!options.categories.empty()) writeCategories(map, options.categories);
   if (!options.nav2.empty()) writeNav2Map(map, options.nav2);
   if (!options.png.empty()) saveScene(sceneOf(map, {.title = map.elevation().source}), "", options.png);
@@ -113,10 +111,10 @@ nlohmann::ordered_json costmapJson(const Ground& site, const costmap::CategoryCo
 }
 
 int run(const CostmapOptions& options, Context& context) {
-  if (!options.nav2.empty() && !context.force)
-    checkOutput(nav2Picture(options.nav2), {options.ground.elevation.path});
-  if (!options.categories.empty() && !context.force)
-    checkOutput(categoryStyle(options.categories), {options.ground.elevation.path});
+  for (const auto& [file, extension] :
+       {std::pair{options.nav2, ".pgm"}, {options.categories, ".qml"}, {options.geotiff, ".qml"}})
+    if (!file.empty() && !context.force)
+      checkOutput(std::filesystem::path(file).replace_extension(extension), {options.ground.elevation.path});
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const costmap::CategoryCounts counts = site.map.costs().countCategories();

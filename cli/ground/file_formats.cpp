@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <string_view>
 
@@ -9,6 +8,7 @@
 
 #include <talus/cli/draw/canvas.hpp>
 #include <talus/cli/ground/file_formats.hpp>
+#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/common/output_file.hpp>
 #include <talus/maps/maps_io.hpp>
@@ -19,12 +19,6 @@ namespace {
 
 using terramech::Category;
 
-constexpr std::array kCategories{Category::Safe, Category::Marginal, Category::Dangerous, Category::Unknown};
-
-std::uint8_t byteOf(double part) {
-  return static_cast<std::uint8_t>(std::lround(255.0 * part));
-}
-
 // Grey value for map_server's trinary mode: free above 0.9, occupied below 0.35.
 char greyOf(Category category, bool allow_marginal) {
   constexpr char kFree = '\xFE', kOccupied = '\x00', kUnknown = '\x80';
@@ -32,43 +26,54 @@ char greyOf(Category category, bool allow_marginal) {
   return category == Category::Unknown ? kUnknown : kOccupied;
 }
 
-// QGIS style with four category names; QGIS reads the file beside the GeoTIFF and would otherwise list all
-// 256 palette entries.
-std::string qgisStyle() {
+// QGIS style of a band whose values 0 to 3 have the colours of the categories. QGIS reads the file beside the
+// GeoTIFF and would otherwise list all 256 palette entries.
+std::string qgisStyle(std::ptrdiff_t band, const std::array<const char*, 4>& names) {
   std::string entries;
-  for (const Category category : kCategories)
-    entries += fmt::format("<paletteEntry value=\"{}\" color=\"#{:06x}\" alpha=\"255\" label=\"{}\"/>\n",
-                           static_cast<int>(category), pixel(colourOf(category)) & 0xFFFFFFU,
-                           terramech::name(category));
-  return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n<qgis version=\"3.22\">\n<pipe>\n"
-         "<rasterrenderer type=\"paletted\" band=\"1\" opacity=\"1\" alphaBand=\"-1\">\n<colorPalette>\n" +
-         entries + "</colorPalette>\n</rasterrenderer>\n</pipe>\n</qgis>\n";
+  for (std::size_t i = 0; i < names.size(); ++i)
+    entries += fmt::format("<paletteEntry value=\"{}\" color=\"#{:06x}\" alpha=\"255\" label=\"{}\"/>\n", i,
+                           pixel(colourOf(static_cast<Category>(i))) & 0xFFFFFFU, names[i]);
+  return fmt::format(
+      "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n<qgis version=\"3.22\">\n<pipe>\n"
+      "<rasterrenderer type=\"paletted\" band=\"{}\" opacity=\"1\" alphaBand=\"-1\">\n<colorPalette>\n{}"
+      "</colorPalette>\n</rasterrenderer>\n</pipe>\n</qgis>\n",
+      band, entries);
 }
 
-}  // namespace
-
-std::filesystem::path categoryStyle(const std::filesystem::path& tif) {
-  return std::filesystem::path(tif).replace_extension(".qml");
-}
-
-void writeCategories(const costmap::TraversabilityMap& map, const std::string& path) {
-  std::vector<maps::NamedClass> classes;
-  for (const Category category : kCategories) {
-    const Colour colour = colourOf(category);
-    classes.push_back({.name = terramech::name(category),
-                       .colour = {byteOf(colour.red), byteOf(colour.green), byteOf(colour.blue)}});
-  }
+// Writes a GeoTIFF by `write(file)`, and its QGIS style beside it.
+template <typename Write>
+void writeStyled(const costmap::TraversabilityMap& map, const std::string& path, const std::string& qgis,
+                 Write write) {
   const auto& georeference = map.elevation().georeference;
-  OutputFile raster(path), style(categoryStyle(path));
-  maps::writeGeoTiff({.path = path, .georeference = georeference ? &*georeference : nullptr, .into = &raster},
-                     "category", map.costs().categories(), std::nullopt, classes);
-  style.write(qgisStyle());
+  OutputFile raster(path), style(std::filesystem::path(path).replace_extension(".qml"));
+  write(
+      maps::GeoTiff{.path = path, .georeference = georeference ? &*georeference : nullptr, .into = &raster});
+  style.write(qgis);
   raster.commit();
   style.commit();
 }
 
-std::filesystem::path nav2Picture(const std::filesystem::path& yaml) {
-  return std::filesystem::path(yaml).replace_extension(".pgm");
+}  // namespace
+
+void writeLayers(const costmap::TraversabilityMap& map, const std::string& path, int threads) {
+  const std::vector<maps::Layer> layers = siteLayers(map, threads);
+  const auto allowed = std::ranges::find(layers, "allowed_headings", &maps::Layer::name);
+  writeStyled(map, path, qgisStyle(allowed - layers.begin() + 1, kAllowedNames),
+              [&](const maps::GeoTiff& file) { maps::writeGeoTiff(file, layers); });
+}
+
+void writeCategories(const costmap::TraversabilityMap& map, const std::string& path) {
+  std::array<const char*, 4> names{};
+  std::vector<maps::NamedClass> classes;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    names[i] = terramech::name(static_cast<Category>(i));
+    const auto rgb = pixel(colourOf(static_cast<Category>(i)));
+    const auto part = [rgb](int shift) { return static_cast<std::uint8_t>(rgb >> shift); };
+    classes.push_back({.name = names[i], .colour = {part(16), part(8), part(0)}});
+  }
+  writeStyled(map, path, qgisStyle(1, names), [&](const maps::GeoTiff& file) {
+    maps::writeGeoTiff(file, "category", map.costs().categories(), std::nullopt, classes);
+  });
 }
 
 void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml) {
@@ -79,12 +84,13 @@ void writeNav2Map(const costmap::TraversabilityMap& map, const std::string& yaml
   for (int row = grid.height - 1; row >= 0; --row)
     for (int column = 0; column < grid.width; ++column)
       picture += greyOf(static_cast<Category>(categories[{column, row}]), allow_marginal);
-  OutputFile beside(nav2Picture(yaml)), file(yaml);
+  const auto picture_path = std::filesystem::path(yaml).replace_extension(".pgm");
+  OutputFile beside(picture_path), file(yaml);
   beside.write(picture);
   file.write(
       fmt::format("image: {}\nresolution: {:.17g}\norigin: [{:.17g}, {:.17g}, 0.0]\nnegate: 0\n"
                   "occupied_thresh: 0.65\nfree_thresh: 0.1\nmode: trinary\n",
-                  nlohmann::json(nav2Picture(yaml).filename().string()).dump(), grid.resolution_m,
+                  nlohmann::json(picture_path.filename().string()).dump(), grid.resolution_m,
                   grid.south_west.x_m, grid.south_west.y_m));
   beside.commit();
   file.commit();

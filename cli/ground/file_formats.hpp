@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,15 +9,12 @@
 
 namespace talus::cli {
 
-/// Returns the path of the QGIS style file that belongs to a GeoTIFF of categories.
-std::filesystem::path categoryStyle(const std::filesystem::path& tif);
+/// Writes siteLayers() as a GeoTIFF, with a QGIS style FILE.qml of the allowed headings. @throws InputError
+void writeLayers(const costmap::TraversabilityMap& map, const std::string& path, int threads);
 
 /// Writes the category of each cell in its worst heading as an integer GeoTIFF with category names, colour
 /// table and overviews (coarser copies), and a QGIS style file. @throws InputError
 void writeCategories(const costmap::TraversabilityMap& map, const std::string& path);
-
-/// Returns the path of the image that belongs to the YAML file of a ROS map_server map.
-std::filesystem::path nav2Picture(const std::filesystem::path& yaml);
 
 /// Writes a map for ROS map_server and Nav2: a YAML file and a PGM image. Safe cells, and marginal cells if
 /// the map's policy permits them, are free. Dangerous cells, and other marginal cells, are occupied. Cells of

@@ -149,11 +149,6 @@ int TravelCurve::bin(double gradient) noexcept {
 
 namespace {
 
-terramech::Gradient seenBy(CellCode cell, Direction heading) noexcept {
-  return {cell.dzDx() * heading.x + cell.dzDy() * heading.y,
-          cell.dzDy() * heading.x - cell.dzDx() * heading.y};
-}
-
 std::vector<TravelCurve> curvesOf(const std::vector<GroundCost>& grounds) {
   std::vector<TravelCurve> curves;
   for (const GroundCost& ground : grounds) curves.push_back(ground.curve);
@@ -192,28 +187,20 @@ TravelCost::TravelCost(const Limits& limits, const std::vector<GroundCost>& grou
 float TravelCost::costPerMetre(CellCode cell, Direction heading) const noexcept {
   constexpr float blocked = std::numeric_limits<float>::infinity();
   if (cell.curve() >= curves_.size()) return blocked;
-  const terramech::Gradient d = seenBy(cell, heading);
+  const terramech::Gradient d = gradientOf(cell, heading);
   if (std::abs(d.along) > limits_.max_along || std::abs(d.across) > limits_.max_across) return blocked;
   return curves_[cell.curve()].price(d.along, d.across);
 }
 
 bool TravelCost::tips(CellCode cell, Direction heading) const noexcept {
-  return mayTip(cell) && limits_.stance->stabilityMargin_rad(demandOf(seenBy(cell, heading))) < 0.0;
+  return mayTip(cell) && limits_.stance->stabilityMargin_rad(demandOf(gradientOf(cell, heading))) < 0.0;
 }
 
 bool TravelCost::mayTip(CellCode cell) const noexcept {
   return cell.dzDx() * cell.dzDx() + cell.dzDy() * cell.dzDy() > steady_gradient_ * steady_gradient_;
 }
 
-// Computes the state from which the cost of a metre follows. This file is separate from travel_cost.cpp,
-// which does not depend on the construction of curves.
-
 namespace {
-
-terramech::Gradient gradientSeen(CellCode cell, Direction heading) noexcept {
-  return {cell.dzDx() * heading.x + cell.dzDy() * heading.y,
-          cell.dzDy() * heading.x - cell.dzDx() * heading.y};
-}
 
 TravelState refused(Refusal reason) noexcept {
   TravelState state;
@@ -221,28 +208,15 @@ TravelState refused(Refusal reason) noexcept {
   return state;
 }
 
-// Interpolates between the nodes that TravelCurve::price() reads.
-TravelState stateAt(const TravelStates& states, double place, double across) noexcept {
-  const auto bin = TravelCurve::between(place),
-             row = TravelCurve::between(std::abs(across) * TravelCurve::kRowsPerUnit);
-  const auto inRow = [&](int at) {
-    const TravelState here = states.at(at, bin.whole);
-    return bin.share > 0.0F ? between(here, states.at(at, bin.whole + 1), bin.share) : here;
-  };
-  const TravelState below = inRow(row.whole);
-  return row.share > 0.0F ? between(below, inRow(row.whole + 1), row.share) : below;
-}
-
 }  // namespace
 
 TravelState TravelCost::detail(CellCode cell, Direction heading) const noexcept {
   if (cell.curve() == CellCode::kBlocked) return refused(Refusal::Blocked);
   if (cell.curve() >= curves_.size()) return refused(Refusal::Unknown);
-  const terramech::Gradient d = gradientSeen(cell, heading);
+  const terramech::Gradient d = gradientOf(cell, heading);
   const double place = d.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2;
-  const double inside = std::clamp(place, 0.0, TravelCurve::kBins - 1.5);
   const TravelStates* states = statesOf(cell);
-  TravelState state = states ? stateAt(*states, inside, d.across) : TravelState{};
+  TravelState state = states ? states->state(d) : TravelState{};
   if (std::abs(d.across) > limits_.max_across)
     state.refusal = limits_.stated ? Refusal::Stated : Refusal::Roll;
   if (std::abs(d.along) > limits_.max_along || !(place >= 0.0 && place < TravelCurve::kLastPlace))
@@ -252,16 +226,16 @@ TravelState TravelCost::detail(CellCode cell, Direction heading) const noexcept 
 
 SlopeHold TravelCost::hold(CellCode cell, Direction heading) const noexcept {
   const TravelStates* states = statesOf(cell);
-  return states ? states->hold(gradientSeen(cell, heading)) : SlopeHold{};
+  return states ? states->hold(gradientOf(cell, heading)) : SlopeHold{};
 }
 
 TravelForecast TravelCost::forecast(CellCode cell, Direction heading) const noexcept {
   const TravelStates* states = statesOf(cell);
-  return states ? states->forecast(gradientSeen(cell, heading)) : TravelForecast{};
+  return states ? states->forecast(gradientOf(cell, heading)) : TravelForecast{};
 }
 
 double TravelCost::climb(CellCode cell, Direction heading) const noexcept {
-  const terramech::Gradient d = gradientSeen(cell, heading);
+  const terramech::Gradient d = gradientOf(cell, heading);
   const TravelStates* states = statesOf(cell);
   return states ? states->climb(d) : d.along;
 }
@@ -311,15 +285,19 @@ TravelState worse(const TravelState& a, const TravelState& b) noexcept {
           .class_index = a.class_index};
 }
 
-TravelState between(const TravelState& a, const TravelState& b, float share) noexcept {
-  TravelState out = a;
-  for (const auto number :
-       {&TravelState::slip, &TravelState::sinkage_m, &TravelState::torque_Nm, &TravelState::energy_J_per_m,
-        &TravelState::time_s_per_m, &TravelState::risk_per_m, &TravelState::weak, &TravelState::pull_margin})
-    out.*number = a.*number + share * (b.*number - a.*number);
-  out.category = std::max(a.category, b.category);
-  if (out.refusal == Refusal::None || b.refusal == Refusal::Tips) out.refusal = b.refusal;
-  return out;
+TravelState TravelStates::state(const terramech::Gradient& gradient) const {
+  std::optional<TravelState> out;
+  TravelCurve::forNodesAround(gradient, [&](int row, int bin, double weight) {
+    const TravelState node = at(row, bin);
+    if (!out) out = {.category = node.category, .refusal = node.refusal, .class_index = node.class_index};
+    for (const auto number : {&TravelState::slip, &TravelState::sinkage_m, &TravelState::torque_Nm,
+                              &TravelState::energy_J_per_m, &TravelState::time_s_per_m,
+                              &TravelState::risk_per_m, &TravelState::weak, &TravelState::pull_margin})
+      (*out).*number += static_cast<float>(weight) * node.*number;
+    out->category = std::max(out->category, node.category);
+    if (out->refusal == Refusal::None || node.refusal == Refusal::Tips) out->refusal = node.refusal;
+  });
+  return *out;
 }
 
 }  // namespace talus::costmap

@@ -101,11 +101,6 @@ struct TravelState {
 /// `b` if `a` is allowed.
 TravelState worse(const TravelState& a, const TravelState& b) noexcept;
 
-/// Returns the state interpolated linearly from `a` (share = 0) to `b` (share = 1). The category is the worse
-/// of both. The refusal is Tips if either state tips, otherwise that of `a`, or that of `b` if `a` is
-/// allowed.
-TravelState between(const TravelState& a, const TravelState& b, float share) noexcept;
-
 }  // namespace talus::costmap
 
 namespace talus::terramech {
@@ -175,6 +170,12 @@ class CellCode {
   Curve curve_;
 };
 
+/// Returns the gradient of the plane of a cell in a heading.
+inline terramech::Gradient gradientOf(CellCode cell, Direction heading) noexcept {
+  return {cell.dzDx() * heading.x + cell.dzDy() * heading.y,
+          cell.dzDy() * heading.x - cell.dzDx() * heading.y};
+}
+
 /// Cost curve: cost per horizontal metre on ground of one estimated strength, tabulated over two gradients.
 /// The gradient along the heading (rise over run, climbing > 0) has kBins nodes at k/256, k = -256..255. The
 /// magnitude of the gradient across the heading has rows at multiples of 1/64. Costs are interpolated
@@ -215,6 +216,20 @@ struct TravelCurve {
     const int whole = static_cast<int>(place + kSame);
     const double rest = place - whole;
     return {whole, rest > kSame ? static_cast<float>(rest) : 0.0F};
+  }
+
+  /// Calls `at(row, bin, weight)` for each node of positive weight around a slope; along the heading, slopes
+  /// beyond the table are those of its ends.
+  template <typename At>
+  static void forNodesAround(const terramech::Gradient& gradient, At at) {
+    const Between bin = between(std::clamp(gradient.along * kBinsPerUnit + kBins / 2, 0.0, kLastPlace)),
+                  row = between((gradient.across < 0.0 ? -gradient.across : gradient.across) * kRowsPerUnit);
+    for (const int up : {0, 1})
+      for (const int on : {0, 1}) {
+        const float weight =
+            (up == 1 ? row.share : 1.0F - row.share) * (on == 1 ? bin.share : 1.0F - bin.share);
+        if (weight > 0.0F) at(row.whole + up, bin.whole + on, static_cast<double>(weight));
+      }
   }
 
   /// rows() returns the costs [J/m] of all nodes, row by row, with kBins costs per row. lastRow() returns the
@@ -347,8 +362,7 @@ class TravelCost {
   /// Returns energy and time of a horizontal metre over the strength of the ground; zeros without states.
   TravelForecast forecast(CellCode cell, Direction heading) const noexcept;
 
-  /// Returns the gradient of the straight climb that requires the same strength as the plane of the cell in a
-  /// heading; without states the gradient along the heading.
+  /// Returns TravelStates::climb() in a heading; without states the gradient along the heading.
   double climb(CellCode cell, Direction heading) const noexcept;
 
   /// Returns the cost of a turn by one radian at a vertex of a route on this cell; 0 on cells without a cost
@@ -430,12 +444,13 @@ class SlopeLattice {
   bool contains(int bin) const noexcept { return bin >= first_ && bin <= last_; }
   /// Returns the node of a row and a bin that contains() includes.
   const StrengthColumn& node(int row, int bin) const noexcept { return nodes_[index(row, bin)]; }
-  /// Returns the gradient of the straight climb that requires the same strength as a slope, at least the gradient
-  /// along; 4 if any ground refuses the slope.
+  /// Returns the greatest climbOf() of the nodes around a slope, at least the gradient along; 4 if any ground
+  /// refuses the slope.
   double climb(const terramech::Gradient& gradient) const noexcept;
   /// Returns the maximum of climb() over all headings on a plane of this gradient; at least `gradient`.
   double steepest(double gradient) const noexcept;
-  /// Returns climb() of the node of a row and a bin that contains() includes, where no side tips.
+  /// Returns the gradient of the straight climb that requires the same strength as the node of a row and a bin
+  /// that contains() includes, where no side tips.
   double climbOf(int row, int bin) const noexcept { return static_cast<double>(climbs_[index(row, bin)]); }
 
  private:
@@ -458,13 +473,16 @@ class TravelStates {
 
   /// Returns the state at the node in `row` (gradient across) and `bin` (gradient along the heading).
   virtual TravelState at(int row, int bin) const = 0;
+  /// Returns the state on a slope, interpolated linearly between the nodes around it. The category is the worst
+  /// of the nodes. The refusal is Tips if a node tips, otherwise that of the first refused node.
+  TravelState state(const terramech::Gradient& gradient) const;
   /// Returns the costs of all nodes. Costs never decrease from row to row.
   virtual TravelCurve curve(const CostWeights& weights) const = 0;
 
   /// Returns slip angle, side force and stability margin on a slope.
   virtual SlopeHold hold(const terramech::Gradient&) const { return {}; }
-  /// Returns the gradient of the straight climb that requires the same strength as a slope; at
-  /// least the gradient along the heading.
+  /// Returns the gradient of the straight climb that requires the same strength as the steepest node around a
+  /// slope, by which state() judges; at least the gradient along the heading.
   virtual double climb(const terramech::Gradient& gradient) const { return gradient.along; }
   /// Returns the maximum of climb() over all headings on a plane of this gradient; at least `gradient`.
   virtual double steepest(double gradient) const { return gradient; }

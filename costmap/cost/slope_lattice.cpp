@@ -159,16 +159,11 @@ double SlopeLattice::climb(const Gradient& gradient) const noexcept {
   constexpr double kNowhere = 4.0;  // steeper than any cell
   const double place = gradient.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2;
   if (!(place >= first_ && place < last_)) return kNowhere;
-  const auto bin = TravelCurve::between(place),
-             row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
-  const auto inRow = [&](int r) {
-    const std::size_t i = index(r, bin.whole),
-                      next = index(r, bin.whole + static_cast<int>(bin.share > 0.0F));
-    if (nodes_[i].margin_rad < 0.0F || nodes_[next].margin_rad < 0.0F) return static_cast<float>(kNowhere);
-    return climbs_[i] + bin.share * (climbs_[next] - climbs_[i]);
-  };
-  const float low = inRow(row.whole), high = inRow(row.whole + static_cast<int>(row.share > 0.0F));
-  return std::min(static_cast<double>(low + row.share * (high - low)), kNowhere);
+  double most = gradient.along;
+  TravelCurve::forNodesAround(gradient, [&](int row, int bin, double) {
+    most = std::max(most, node(row, bin).margin_rad < 0.0F ? kNowhere : climbOf(row, bin));
+  });
+  return std::min(most, kNowhere);
 }
 
 void SlopeLattice::findSteepest() {
@@ -219,16 +214,7 @@ TravelCurve TabulatedStates::curve(const CostWeights& weights) const {
 }
 
 TravelForecast TabulatedStates::forecast(const terramech::Gradient& gradient) const {
-  const auto place = TravelCurve::between(
-                 std::clamp(gradient.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0,
-                            TravelCurve::kLastPlace)),
-             row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
-  const auto inRow = [&](int k) {
-    const TravelState here = at(k, place.whole);
-    return place.share > 0.0F ? between(here, at(k, place.whole + 1), place.share) : here;
-  };
-  const TravelState state =
-      row.share > 0.0F ? between(inRow(row.whole), inRow(row.whole + 1), row.share) : inRow(row.whole);
+  const TravelState state = this->state(gradient);
   TravelForecast out;
   out.energy_J_per_m.fill(state.energy_J_per_m);
   out.time_s_per_m.fill(state.time_s_per_m);

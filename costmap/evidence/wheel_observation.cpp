@@ -116,8 +116,8 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   w.asked = turned ? r.gradient * std::cos(angle) - r.across * std::sin(angle) : r.gradient;
   w.held = turned ? std::abs(r.gradient * std::sin(angle) + r.across * std::cos(angle)) : 0.0;
   const SteadyWheel more = at(r.slip + noise_.slip, rut), less = at(r.slip - noise_.slip, rut);
-  w.steepness = (more.gradient - less.gradient) / 2.0;
-  w.rut_gain = rut ? w.expected.gradient - at(r.slip, false).gradient : 0.0;
+  w.steepness = (more.drawbar_pull_over_load - less.drawbar_pull_over_load) / 2.0;
+  w.rut_gain = rut ? w.expected.drawbar_pull_over_load - at(r.slip, false).drawbar_pull_over_load : 0.0;
   const SteadyWheel straight =
       turned ? model_.steady(read.class_index, {.slip = r.slip, .in_rut = rut}) : w.expected;
   if (!departures.empty()) w.known = departures[static_cast<std::size_t>(read.class_index)];
@@ -125,7 +125,7 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
   // that the slip error explains is removed; otherwise the error of a small slip would bias the departure.
   if (const double thrust = w.reference.torque_over_load_radius; thrust > 0.0) {
     w.share = straight.torque_over_load_radius / thrust;
-    w.expected.gradient += w.known * std::max(w.share, 0.0);
+    w.expected.drawbar_pull_over_load += w.known * std::max(w.share, 0.0);
     if (known(w.asked)) {
       const double there =
           model_.onSlope(read.class_index, w.asked - w.known, rut).torque_over_load_radius / thrust;
@@ -160,10 +160,12 @@ WheelObserver::Wheel WheelObserver::expected(const ClassReading& read,
 // Departure of the ground under a wheel from its class by the side force, <= 0; infinite if the side force
 // gives no bound.
 double WheelObserver::weakerAcross(const Wheel& w) const noexcept {
-  if (!(w.held >= kHeld) || !(w.expected.hold > 0.0)) return std::numeric_limits<double>::infinity();
+  if (!(w.held >= kHeld) || !(w.expected.side_force_over_load > 0.0))
+    return std::numeric_limits<double>::infinity();
   const double thrust = w.reference.torque_over_load_radius;
-  return std::min(0.0,
-                  (w.held + 2.0 * std::hypot(noise_.gradient, noise_.model_pull)) / w.expected.hold - 1.0) *
+  return std::min(0.0, (w.held + 2.0 * std::hypot(noise_.gradient, noise_.model_pull)) /
+                               w.expected.side_force_over_load -
+                           1.0) *
          thrust;
 }
 
@@ -196,7 +198,7 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
                        .place = reading.place,
                        .pull = {},
                        .sinkage = {},
-                       .demand = w.expected.gradient + balance.departure,
+                       .demand = w.expected.drawbar_pull_over_load + balance.departure,
                        .from_torque = w.from_torque,
                        .pose_std_m = reading.pose_std_m,
                        .bound = balance.standing && !known(reading.drawbar_pull_N)};
@@ -207,7 +209,7 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
   }
   if (known(reading.drawbar_pull_N))
     seen = bySlope(w,
-                   {.departure = reading.drawbar_pull_N / reading.load_N - w.expected.gradient,
+                   {.departure = reading.drawbar_pull_N / reading.load_N - w.expected.drawbar_pull_over_load,
                     .share = std::max(w.share, kLeastShare)},
                    0.0);
   if (out.bound) seen = upperBound(w, balance);
@@ -241,13 +243,13 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
     const double load_N = read.reading.load_N;
     load += load_N;
     all.standing |= read.reading.slip >= kStanding;
-    all.departure += load_N * (w.asked - w.expected.gradient);
+    all.departure += load_N * (w.asked - w.expected.drawbar_pull_over_load);
     all.across += load_N * weakerAcross(w);
     all.wheels += 1.0;
     all.share += load_N * w.share;
     if (!known(w.from_torque)) continue;
     felt_load += load_N;
-    felt += load_N * (w.from_torque - w.expected.gradient);
+    felt += load_N * (w.from_torque - w.expected.drawbar_pull_over_load);
   }
   all.departure /= load;
   all.across /= load;
@@ -260,7 +262,7 @@ std::vector<std::optional<WheelObservation>> WheelObserver::observe(
       continue;
     }
     const Wheel& w = wheels[next++];
-    const double own = w.from_torque - w.expected.gradient - felt / felt_load;
+    const double own = w.from_torque - w.expected.drawbar_pull_over_load - felt / felt_load;
     out.push_back(observed(w, all, known(own) ? own : 0.0));
   }
   return out;

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 #include <stdexcept>
 #include <string>
 
@@ -32,29 +33,6 @@ CategoryTable::Entry entryOf(const RankedCategory& ranked) {
   return {static_cast<std::uint8_t>(ranked.category), static_cast<std::uint8_t>(rounded)};
 }
 
-// Increases `climb` until the model's category is at least `least`, and returns that category.
-RankedCategory atLeast(const GroundModel& model, const GroundBelief& belief, Category least, double climb) {
-  RankedCategory ranked = model.category(belief, climb);
-  while (ranked.category < least && climb < 4.0)
-    ranked = model.category(belief, climb += 1.0 / TravelCurve::kBinsPerUnit);
-  return ranked;
-}
-
-CellCode planeOf(int step) {
-  return CellCode({.dz_dx = step * CellCode::kStep, .dz_dy = 0.0, .curve = 0});
-}
-
-// State in the worst heading, with the worst category over all headings.
-TravelState stateOn(const TravelCost& cost, CellCode plane) {
-  TravelState state = cost.detail(plane, worstHeading(cost, plane));
-  for (int k = 0; k < kJudgedHeadings; ++k) {
-    const double heading = k * std::numbers::pi / kJudgedHeadings;
-    state.category =
-        std::max(state.category, cost.detail(plane, {std::cos(heading), std::sin(heading)}).category);
-  }
-  return state;
-}
-
 }  // namespace
 
 Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept {
@@ -78,7 +56,7 @@ Direction worstHeading(const TravelCost& cost, CellCode cell) noexcept {
 
 RankedCategory judged(const GroundModel& model, const GroundBelief& belief, const TravelState& state,
                       double climb) {
-  const RankedCategory ranked = atLeast(model, belief, state.category, climb);
+  const RankedCategory ranked = model.category(belief, climb);
   const bool driven = state.refusal == Refusal::None || state.refusal == Refusal::Category;
   if (driven || ranked.category == Category::Dangerous) return ranked;
   return {Category::Dangerous, isOfSoil(state.refusal) ? static_cast<double>(state.weak) : 1.0};
@@ -89,28 +67,18 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
   limits.stance.reset();  // only TravelCost::tips() needs the stance
   const TravelCost cost(limits, std::vector{ground});
   const auto judgedAt = [&](int step) {
-    return judged(model, belief, stateOn(cost, planeOf(step)),
-                  ground.states->steepest(step * CellCode::kStep));
+    const CellCode plane({.dz_dx = step * CellCode::kStep, .dz_dy = 0.0, .curve = 0});
+    const Direction worst = worstHeading(cost, plane);
+    return judged(model, belief, cost.detail(plane, worst), ground.states->steepest(step * CellCode::kStep));
   };
-  // First step with a category at least `least`, by bisection: categories are monotone in the gradient.
-  const auto boundOf = [&](Category least) {
-    int from = 0;
-    for (int beyond = kSteps - 1; from < beyond;) {
-      const int middle = (from + beyond) / 2;
-      if (judgedAt(middle).category < least)
-        from = middle + 1;
-      else
-        beyond = middle;
-    }
-    return std::pair(from, judgedAt(from));
-  };
-  const std::array bounds{boundOf(Category::Marginal), boundOf(Category::Dangerous)};
-  entries_.reserve(kSteps);
+  // Categories are monotone in the gradient.
+  const auto steps = std::views::iota(0, kSteps - 1);
+  const int refused = *std::ranges::partition_point(
+      steps, [&](int step) { return judgedAt(step).category < Category::Dangerous; });
+  const Entry dangerous = entryOf(judgedAt(refused));
   for (int step = 0; step < kSteps; ++step) {
-    RankedCategory now = model.category(belief, ground.states->steepest(step * CellCode::kStep));
-    for (const auto& [from, ranked] : bounds)
-      if (step >= from && now.category < ranked.category) now = ranked;
-    entries_.push_back(entryOf(now));
+    const RankedCategory here = model.category(belief, ground.states->steepest(step * CellCode::kStep));
+    entries_.push_back(step >= refused && here.category < Category::Dangerous ? dangerous : entryOf(here));
   }
 }
 

@@ -21,44 +21,13 @@ namespace {
 // Least thrust divided by load [-], below which the strength of ground is not defined.
 constexpr double kLeastThrust = 0.02;
 
+}  // namespace
+
 terramech::RefinedModel modelOf(const GroundClass& ground) {
-  terramech::RefinedModel model;
-  model.soil = ground.soil;
+  terramech::RefinedModel model = terramech::onSoil(ground.soil);
   model.effects = ground.effects;
   return model;
 }
-
-terramech::SlopeEquilibrium slopeOf(const GroundClass& ground, const terramech::Rover& rover) {
-  if (ground.effects.empty()) return {ground.soil, rover};
-  return {modelOf(ground), rover};
-}
-
-// Returns the class in the rut of an equal wheel: by its multipass effect if found in data, else by rutted().
-GroundClass rutOf(const GroundClass& ground) {
-  GroundClass rut = ground;
-  if (!terramech::knowsPasses(ground.effects)) rut.soil = terramech::rutted(ground.soil);
-  return rut;
-}
-
-terramech::MobilityOptions passOf(const GroundClass& rut) {
-  return terramech::knowsPasses(rut.effects) ? terramech::MobilityOptions{.pass = 2}
-                                             : terramech::MobilityOptions{};
-}
-
-}  // namespace
-
-terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
-                                         const terramech::MobilityOptions& options) {
-  if (ground.effects.empty()) return terramech::mobilityReference(ground.soil, rover, options);
-  return terramech::mobilityReference(modelOf(ground), rover, options);
-}
-
-struct GroundModel::Lazy {
-  std::once_flag once, solved;
-  std::optional<terramech::SlopeEquilibrium> slope;
-  std::array<double, 2> most_slip{};  // fresh, in a rut
-  std::shared_ptr<const SlopeLattice> lattice;
-};
 
 GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   if (parts_.classes.empty())
@@ -83,49 +52,42 @@ GroundModel::GroundModel(Parts parts) : parts_(std::move(parts)) {
   for (const GroundClass& c : parts_.classes) {
     if (&parts_.classes[static_cast<std::size_t>(classIndex(c.number))] != &c)
       throw std::invalid_argument("ground model: class " + std::to_string(c.number) + " is declared twice");
-    if (parts_.stated) {
-      references_.emplace_back();
-      continue;
-    }
-    // referenceOf() throws if a field of the class is out of range: an invalid class is refused here, not at
-    // the first use of its curve.
-    const GroundClass rut = rutOf(c);
-    const terramech::MobilityReference fresh = costmap::referenceOf(c, parts_.rover);
-    references_.push_back(
-        {.fresh = fresh,
-         .in_rut = costmap::referenceOf(rut, parts_.rover, passOf(rut)),
-         .prior = {.pull = {fresh.drawbar_pull_over_load, std::hypot(c.pull_std, c.mean_std)},
-                   .sinkage = {fresh.sinkage_over_radius, c.sinkage_std}}});
-    grounds_.push_back(std::make_shared<Lazy>());
+    const auto& ground = grounds_.emplace_back(std::make_shared<Ground>());
+    if (parts_.stated) continue;
+    // mobilityReference() throws if a field of the class is out of range: an invalid class is refused here, not
+    // at the first use of its curve.
+    const terramech::RefinedModel model = modelOf(c);
+    ground->reference = {terramech::mobilityReference(model, parts_.rover),
+                         terramech::mobilityReference(terramech::rutted(model), parts_.rover, 2)};
+    const SteadyWheel& fresh = ground->reference[0];
+    ground->prior = {.pull = {fresh.drawbar_pull_over_load, std::hypot(c.pull_std, c.mean_std)},
+                     .sinkage = {fresh.sinkage_over_radius, c.sinkage_std}};
   }
   rules_ = std::make_shared<const GroundRules>(GroundRules{parts_.policy, parts_.rover});
 }
 
 const terramech::SlopeEquilibrium& GroundModel::slope(int class_index) const {
-  const auto i = static_cast<std::size_t>(class_index);
-  Lazy& lazy = *grounds_[i];
-  std::call_once(lazy.once, [&] {
-    lazy.slope.emplace(slopeOf(parts_.classes[i], parts_.rover));
+  Ground& ground = of(class_index);
+  std::call_once(ground.once, [&] {
+    ground.slope.emplace(modelOf(parts_.classes[static_cast<std::size_t>(class_index)]), parts_.rover);
     for (const bool in_rut : {false, true}) {
-      double& most = lazy.most_slip[in_rut ? 1 : 0];
-      const auto pull = [&](double slip) { return lazy.slope->evenWheel(slip, 0.0, in_rut).drawbar_pull_N; };
+      double& most = ground.most_slip[in_rut ? 1 : 0];
+      const auto pull = [&](double slip) {
+        return ground.slope->evenWheel(slip, 0.0, in_rut).drawbar_pull_over_load;
+      };
       while (most < 0.98 && pull(most + 0.02) > pull(most)) most += 0.02;
     }
   });
-  return *lazy.slope;
-}
-
-double GroundModel::mostSlip(int class_index, bool in_rut) const {
-  slope(class_index);
-  return grounds_[static_cast<std::size_t>(class_index)]->most_slip[in_rut ? 1 : 0];
+  return *ground.slope;
 }
 
 const std::shared_ptr<const SlopeLattice>& GroundModel::lattice(int class_index) const {
-  Lazy& lazy = *grounds_[static_cast<std::size_t>(class_index)];
-  std::call_once(lazy.solved, [&] {
-    lazy.lattice = std::make_shared<const SlopeLattice>(slope(class_index), limits(), parts_.prices_crossing);
+  Ground& ground = of(class_index);
+  std::call_once(ground.solved, [&] {
+    ground.lattice =
+        std::make_shared<const SlopeLattice>(slope(class_index), limits(), parts_.prices_crossing);
   });
-  return lazy.lattice;
+  return ground.lattice;
 }
 
 int GroundModel::classIndex(int number) const noexcept {
@@ -135,34 +97,23 @@ int GroundModel::classIndex(int number) const noexcept {
 }
 
 SteadyWheel GroundModel::steady(int class_index, const SlippingWheel& wheel) const {
-  const terramech::WheelOnSlope w = slope(class_index)
-                                        .evenWheel(std::min(wheel.slip, mostSlip(class_index, wheel.in_rut)),
-                                                   wheel.slip_angle_rad, wheel.in_rut);
-  const double radius_m = parts_.rover.wheel.radius_m;
-  return {.gradient = w.drawbar_pull_N / w.load_N,
-          .sinkage_over_radius = w.sinkage_m / radius_m,
-          .torque_over_load_radius = w.torque_Nm / (w.load_N * radius_m),
-          .hold = std::abs(w.side_force_N) / w.load_N};
+  const terramech::SlopeEquilibrium& rover = slope(class_index);
+  const double most = of(class_index).most_slip[wheel.in_rut ? 1 : 0];
+  return rover.evenWheel(std::min(wheel.slip, most), wheel.slip_angle_rad, wheel.in_rut);
 }
 
 SteadyWheel GroundModel::onSlope(int class_index, double gradient, bool in_rut) const {
   const auto at = [&](double slip) { return steady(class_index, {.slip = slip, .in_rut = in_rut}); };
-  double low = -1.0, high = mostSlip(class_index, in_rut);
+  double low = -1.0, high = 1.0;  // steady() limits the slip to that of the greatest pull
   for (int halving = 0; halving < 20; ++halving) {
     const double middle = 0.5 * (low + high);
-    (at(middle).gradient < gradient ? low : high) = middle;
+    (at(middle).drawbar_pull_over_load < gradient ? low : high) = middle;
   }
   return at(high);
 }
 
-SteadyWheel GroundModel::reference(int class_index, bool in_rut) const noexcept {
-  const Reference& known = referenceOf(class_index);
-  const terramech::MobilityReference& at = in_rut ? known.in_rut : known.fresh;
-  return {at.drawbar_pull_over_load, at.sinkage_over_radius, at.torque_over_load_radius};
-}
-
 StrengthOfClass GroundModel::strengthOf(int class_index, const GroundBelief& belief) const {
-  const terramech::MobilityReference& fresh = referenceOf(class_index).fresh;
+  const SteadyWheel& fresh = reference(class_index, false);
   const double thrust = std::max(fresh.torque_over_load_radius, kLeastThrust);
   const double deeper =
       fresh.sinkage_over_radius > 0.0 ? belief.sinkage.value / fresh.sinkage_over_radius : 1.0;

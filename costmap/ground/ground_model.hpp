@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -18,6 +19,7 @@
 namespace talus::costmap {
 
 using terramech::Estimate;
+using terramech::SteadyWheel;
 
 /// Estimated strength of ground: quantities of a wheel at the reference slip 0.5, each with standard
 /// deviation.
@@ -32,32 +34,17 @@ struct RankedCategory {
   double probability = 0.0;
 };
 
-/// Category of ground by its pull against the slope and by its sinkage (thesis 3.5).
-class GroundCategory {
- public:
-  GroundCategory(const TravelPolicy& policy, const terramech::Rover& rover);
-
-  /// Returns the category of ground of a known pull over load and sinkage over radius at a gradient.
-  terramech::Category at(double pull, double sinkage, double gradient) const;
-  /// Returns the category of ground with the mean strength of `belief` at a gradient, and the probability of
-  /// that category under the uncertainty of `belief`.
-  RankedCategory ranked(const GroundBelief& belief, double gradient) const;
-
- private:
-  // `low` is the DP/W below which a slope is dangerous, and `high` is the DP/W above which it is safe.
-  struct Edges {
-    double low, high;
-  };
-  Edges edges(double gradient) const noexcept;
-
-  double tan_margin_, threshold_, critical_;
-};
-
 /// Permissions, weights and limits of the rover by which ground is priced.
 struct GroundRules {
   TravelPolicy policy;
   terramech::Rover rover;
-  GroundCategory category{policy, rover};
+  double tan_margin = std::tan(policy.slope_margin_rad);
+
+  /// Returns the limits of the categories of ground at a gradient, by its pull against the slope and by its
+  /// sinkage (thesis 3.5).
+  terramech::CategoryThresholds thresholds(double gradient) const noexcept;
+  /// Returns the category of ground with the mean strength of `belief` at a gradient.
+  terramech::Category category(const GroundBelief& belief, double gradient) const;
 };
 
 /// A class to which ground may belong, and the strength of the ground relative to that class.
@@ -91,8 +78,6 @@ class GroundStates final : public TravelStates {
   double steepest(double gradient) const override;
   TravelForecast forecast(const terramech::Gradient& gradient) const override;
 
-  /// Returns the state on a slope without gradient across, interpolated between nodes.
-  TravelState onClimb(double gradient) const;
   std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const override;
 
  private:
@@ -133,10 +118,8 @@ struct GroundClass {
       0.0;  ///< standard deviation of Soil::rut_stiffness, drawn in simulated worlds [-]
 };
 
-/// Returns the quantities of a wheel on fresh ground of the mean soil of a class at the reference slip 0.5.
-/// Throws std::invalid_argument if soil, rover or an option is out of range.
-terramech::MobilityReference referenceOf(const GroundClass& ground, const terramech::Rover& rover,
-                                         const terramech::MobilityOptions& options = {});
+/// Returns the wheel model of a class.
+terramech::RefinedModel modelOf(const GroundClass& ground);
 
 /// State of a driven wheel.
 struct SlippingWheel {
@@ -146,17 +129,6 @@ struct SlippingWheel {
   bool in_rut = false;
   /// Angle from the wheel plane to the direction of travel, left positive; limited to 60 degrees.
   double slip_angle_rad = 0.0;
-};
-
-/// Quantities of a wheel that drives at constant speed.
-struct SteadyWheel {
-  /// Gradient of the slope on which the wheel drives at constant speed; equal to DP/W [-].
-  double gradient = 0.0;
-  /// Sinkage over wheel radius, z/r [-].
-  double sinkage_over_radius = 0.0;
-  /// Torque over (load * wheel radius), T/(W r) [-].
-  double torque_over_load_radius = 0.0;
-  double hold = 0.0;  ///< side force that resists sideways motion, over load [-]
 };
 
 /// Travel states that are stated, not computed from a rover and soils. The rover is a point, the cost is the energy,
@@ -203,7 +175,7 @@ class GroundModel {
   int classIndex(int number) const noexcept;
 
   /// Returns the estimated strength of a class before any evidence from wheels.
-  const GroundBelief& prior(int class_index) const noexcept { return referenceOf(class_index).prior; }
+  const GroundBelief& prior(int class_index) const noexcept { return of(class_index).prior; }
 
   /// Returns the quantities of a wheel that drives at constant slip on the soil of the class. The slip is
   /// limited to that of the greatest pull.
@@ -212,7 +184,9 @@ class GroundModel {
   /// limited to the drivable gradients.
   SteadyWheel onSlope(int class_index, double gradient, bool in_rut) const;
   /// Returns the quantities of a wheel at the reference slip 0.5.
-  SteadyWheel reference(int class_index, bool in_rut) const noexcept;
+  const SteadyWheel& reference(int class_index, bool in_rut) const noexcept {
+    return of(class_index).reference[in_rut ? 1 : 0];
+  }
 
   /// Returns the cost curve and the tabulated travel states of ground that belongs to a class and has the
   /// estimated strength `belief`.
@@ -228,31 +202,34 @@ class GroundModel {
 
   /// Returns the travel state on a gradient along the heading (rise over run) without cross slope.
   TravelState state(int class_index, const GroundBelief& belief, double gradient) const {
-    return states(class_index, class_index, belief)->onClimb(gradient);
+    return states(class_index, class_index, belief)->state({.along = gradient});
   }
 
   /// Returns the category of ground with the mean strength of `belief` at a gradient along the heading, and
   /// the probability of that category under the uncertainty of `belief`.
   RankedCategory category(const GroundBelief& belief, double gradient) const {
     if (parts_.stated) return {terramech::Category::Safe, 1.0};
-    return rules_->category.ranked(belief, gradient);
+    const terramech::Category mean = rules_->category(belief, gradient);
+    return {mean,
+            terramech::categoryProbability({belief.pull, belief.sinkage},
+                                           rules_->thresholds(gradient))[static_cast<std::size_t>(mean)]};
   }
 
   /// Returns the limits of pitch and roll as gradients, and the tipping geometry of the rover.
   TravelCost::Limits limits() const;
 
  private:
-  // Quantities computed at construction; Lazy contains the quantities computed at the first use.
-  struct Reference {
-    terramech::MobilityReference fresh, in_rut;  // quantities of one wheel on undisturbed ground and in a rut
+  // A class: its references on fresh ground and in a rut, and what is computed at the first use.
+  struct Ground {
+    std::array<SteadyWheel, 2> reference;
     GroundBelief prior;
+    std::once_flag once, solved;
+    std::optional<terramech::SlopeEquilibrium> slope;
+    std::array<double, 2> most_slip{};  // least slip at a maximum of the pull, on fresh ground and in a rut
+    std::shared_ptr<const SlopeLattice> lattice;
   };
-  struct Lazy;
-  const Reference& referenceOf(int class_index) const noexcept {
-    return references_[static_cast<std::size_t>(class_index)];
-  }
+  Ground& of(int class_index) const noexcept { return *grounds_[static_cast<std::size_t>(class_index)]; }
   const terramech::SlopeEquilibrium& slope(int class_index) const;
-  double mostSlip(int class_index, bool in_rut) const;  // least slip at a maximum of the pull
   std::shared_ptr<const GroundStates> states(int class_index, int other_class,
                                              const GroundBelief& belief) const;
   StrengthOfClass strengthOf(int class_index, const GroundBelief& belief) const;
@@ -260,23 +237,23 @@ class GroundModel {
 
   Parts parts_;
   std::shared_ptr<const GroundRules> rules_;
-  std::vector<Reference> references_;
-  std::vector<std::shared_ptr<Lazy>> grounds_;
+  std::vector<std::shared_ptr<Ground>> grounds_;
 };
 
 /// Returns the terrain class number `number` for a soil prior and a rover. GroundClass::mean_std is the
-/// standard deviation of drawbar pull over load DP/W at the reference slip 0.5, by first-order propagation of
+/// standard deviation of drawbar pull over load DP/W at the reference slip 0.5, by central differences over
 /// the standard deviations of cohesion, friction angle, sinkage exponent, moduli, shear modulus and
 /// slip-sinkage exponent as independent parameters; a prior without standard deviations keeps GroundClass's
 /// default. A soil that was tested in greater gravity is converted by underGravity(); mean_std then includes
-/// the effect of a gravity exponent of 0.5 instead of 1. Throws std::invalid_argument if MobilityCurve
-/// rejects the soil or the rover.
+/// the effect of a gravity exponent of 0.5 instead of 1. Throws std::invalid_argument if
+/// mobilityReference() rejects the soil or the rover.
 GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover);
 
 /// Returns the terrain class number `number` for a refined model (soil and effects fitted to wheel data) and
 /// a rover. mean_std is the standard deviation of DP/W at the reference slip by the model's covariance; a
 /// model without a covariance keeps GroundClass's default. Sensor effects are omitted. Gravity is converted
-/// as for a soil prior. Throws std::invalid_argument if MobilityCurve rejects the soil or the rover.
+/// as for a soil prior. Throws std::invalid_argument if mobilityReference()
+/// rejects the soil or the rover.
 GroundClass groundClass(int number, const terramech::RefinedModel& model, const terramech::Rover& rover);
 
 }  // namespace talus::costmap

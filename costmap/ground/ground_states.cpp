@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -8,60 +9,27 @@
 #include <vector>
 
 #include <talus/costmap/ground/ground_model.hpp>
+#include <talus/terramech/mobility/wheel_forces_table.hpp>
 #include <talus/terramech/numerics/functions.hpp>
 
 namespace talus::costmap {
 
-namespace {
-
-// P(value < bound) of a normal estimate; a step function for std = 0.
-double probabilityBelow(const Estimate& value, double bound) {
-  if (value.std <= 0.0) return value.value < bound ? 1.0 : 0.0;
-  return terramech::normalProbability((bound - value.value) / value.std);
-}
-
-}  // namespace
-
-GroundCategory::GroundCategory(const TravelPolicy& policy, const terramech::Rover& rover)
-    : tan_margin_(std::tan(policy.slope_margin_rad)),
-      critical_(policy.sinkage_critical > 0.0 ? policy.sinkage_critical
-                                              : rover.clearance_m / rover.wheel.radius_m) {
-  threshold_ = std::min(policy.sinkage_threshold, critical_);
-}
-
-// tan(slope -+ margin) by the addition theorem; infinite beyond a right angle.
-GroundCategory::Edges GroundCategory::edges(double gradient) const noexcept {
-  const double left = 1.0 - gradient * tan_margin_, right = 1.0 + gradient * tan_margin_;
+// The limits of the pull are tan(slope -+ margin) by the addition theorem, infinite beyond a right angle.
+terramech::CategoryThresholds GroundRules::thresholds(double gradient) const noexcept {
   constexpr double kSteeper = std::numeric_limits<double>::infinity();
-  return {.low = right > 0.0 ? (gradient - tan_margin_) / right : -kSteeper,
-          .high = left > 0.0 ? (gradient + tan_margin_) / left : kSteeper};
+  const double left = 1.0 - gradient * tan_margin, right = 1.0 + gradient * tan_margin;
+  const double critical =
+      policy.sinkage_critical > 0.0 ? policy.sinkage_critical : rover.clearance_m / rover.wheel.radius_m;
+  return {.dp_low = right > 0.0 ? (gradient - tan_margin) / right : -kSteeper,
+          .dp_high = left > 0.0 ? (gradient + tan_margin) / left : kSteeper,
+          .z_threshold = std::min(policy.sinkage_threshold, critical),
+          .z_critical = critical};
 }
 
-terramech::Category GroundCategory::at(double pull, double sinkage, double gradient) const {
-  const Edges edge = edges(gradient);
+terramech::Category GroundRules::category(const GroundBelief& belief, double gradient) const {
   return terramech::categorise(
-      {.drawbar_pull_over_load = pull, .sinkage_over_radius = sinkage},
-      {.dp_low = edge.low, .dp_high = edge.high, .z_threshold = threshold_, .z_critical = critical_});
-}
-
-RankedCategory GroundCategory::ranked(const GroundBelief& belief, double gradient) const {
-  const Edges edge = edges(gradient);
-  const double below_low = probabilityBelow(belief.pull, edge.low);
-  const double below_high = probabilityBelow(belief.pull, edge.high);
-  const double carried = probabilityBelow(belief.sinkage, threshold_);
-  const double free = probabilityBelow(belief.sinkage, critical_);
-  // Sums the probabilities of the combinations of pull and sinkage ranks that have the category of the mean.
-  constexpr double kMost = std::numeric_limits<double>::infinity();
-  const std::array<std::pair<double, double>, 3> pulls{
-      {{kMost, 1.0 - below_high}, {gradient, below_high - below_low}, {-kMost, below_low}}};
-  const std::array<std::pair<double, double>, 3> sinkages{
-      {{-kMost, carried}, {threshold_, free - carried}, {kMost, 1.0 - free}}};
-  const terramech::Category mean = at(belief.pull.value, belief.sinkage.value, gradient);
-  double probability = 0.0;
-  for (const auto& [pull, chance] : pulls)
-    for (const auto& [sinkage, share] : sinkages)
-      if (chance * share > 1e-9 && at(pull, sinkage, gradient) == mean) probability += chance * share;
-  return {mean, probability};
+      {.drawbar_pull_over_load = belief.pull.value, .sinkage_over_radius = belief.sinkage.value},
+      thresholds(gradient));
 }
 
 namespace {
@@ -148,21 +116,6 @@ double probabilityBelow(double bound, double std) {
   return std > 1e-6 ? terramech::normalProbability(bound / std) : 0.0;
 }
 
-// Interpolates between the four nodes around a slope; `at(row, bin, weight)` is called for each.
-template <typename At>
-void forNodesAround(const terramech::Gradient& gradient, At at) {
-  const double place = std::clamp(gradient.along * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0,
-                                  TravelCurve::kLastPlace);
-  const auto bin = TravelCurve::between(place),
-             row = TravelCurve::between(std::abs(gradient.across) * TravelCurve::kRowsPerUnit);
-  for (const int up : {0, 1})
-    for (const int on : {0, 1}) {
-      const double weight = static_cast<double>((up == 1 ? row.share : 1.0F - row.share) *
-                                                (on == 1 ? bin.share : 1.0F - bin.share));
-      if (weight > 0.0) at(row.whole + up, bin.whole + on, weight);
-    }
-}
-
 }  // namespace
 
 GroundStates::GroundStates(std::shared_ptr<const GroundRules> rules, std::vector<StrengthOfClass> classes,
@@ -190,8 +143,7 @@ GroundStates::Node GroundStates::node(const StrengthOfClass& of, const WeightTab
   state.class_index = static_cast<std::uint8_t>(of.class_index);
   if (!of.lattice->contains(bin)) {
     state.refusal = Refusal::Pitch;
-    state.category =
-        rules_->category.at(belief_.pull.value, belief_.sinkage.value, TravelCurve::gradient(bin));
+    state.category = rules_->category(belief_, TravelCurve::gradient(bin));
     return out;
   }
   const StrengthColumn& column = of.lattice->node(row, bin);
@@ -218,7 +170,7 @@ GroundStates::Node GroundStates::node(const StrengthOfClass& of, const WeightTab
   state.risk_per_m = static_cast<float>(risk);
   state.weak = static_cast<float>(weak);
   state.pull_margin = static_cast<float>(belief_.pull.value - climb);
-  state.category = rules_->category.at(belief_.pull.value, belief_.sinkage.value, climb);
+  state.category = rules_->category(belief_, climb);
   const bool excluded = (state.category == terramech::Category::Dangerous && !policy.allow_dangerous) ||
                         (state.category == terramech::Category::Marginal && !policy.allow_marginal);
   if (static_cast<double>(column.margin_rad) < kUpright_rad)
@@ -284,18 +236,11 @@ bool GroundStates::isAllowed(std::size_t node) const {
 
 TravelState GroundStates::at(int row, int bin) const {
   TravelState state = node(row, bin).state;
-  for (int r = std::min(row, rows() - 1); r >= 0 && state.refusal == Refusal::None; --r) {
-    if (isAllowed(static_cast<std::size_t>(r * TravelCurve::kBins + bin))) break;
-    state.refusal = node(r, bin).state.refusal;
-  }
+  const auto index = [&](int r) { return static_cast<std::size_t>(r * TravelCurve::kBins + bin); };
+  for (int r = std::min(row, rows() - 1); r > 0 && state.refusal == Refusal::None && !isAllowed(index(r));
+       --r)
+    state.refusal = node(r - 1, bin).state.refusal;
   return state;
-}
-
-TravelState GroundStates::onClimb(double gradient) const {
-  const auto place = TravelCurve::between(std::clamp(
-      gradient * TravelCurve::kBinsPerUnit + TravelCurve::kBins / 2, 0.0, TravelCurve::kLastPlace));
-  const TravelState here = node(0, place.whole).state;
-  return place.share > 0.0F ? between(here, node(0, place.whole + 1).state, place.share) : here;
 }
 
 TravelCurve GroundStates::curve(const CostWeights& weights) const {
@@ -314,7 +259,7 @@ TravelCurve GroundStates::curve(const CostWeights& weights) const {
 SlopeHold GroundStates::hold(const terramech::Gradient& gradient) const {
   SlopeHold out{0.0, 0.0, 0.0};
   const StrengthOfClass& of = classes_.front();
-  forNodesAround(gradient, [&](int row, int bin, double weight) {
+  TravelCurve::forNodesAround(gradient, [&](int row, int bin, double weight) {
     const StrengthColumn* column = of.lattice->contains(bin) ? &of.lattice->node(row, bin) : nullptr;
     const double excess = column ? of.strength.value - static_cast<double>(column->least) : -1.0;
     const auto add = [&](double& to, double value) { to += weight * value; };
@@ -342,7 +287,7 @@ double GroundStates::steepest(double gradient) const {
 TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const {
   TravelForecast out{.fails_below = 0.0};
   const StrengthOfClass& of = classes_.front();
-  forNodesAround(gradient, [&](int row, int bin, double weight) {
+  TravelCurve::forNodesAround(gradient, [&](int row, int bin, double weight) {
     if (!of.lattice->contains(bin)) return;
     const StrengthColumn& column = of.lattice->node(row, bin);
     const double reserve = of.strength.value - static_cast<double>(column.least);
@@ -361,6 +306,7 @@ TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const
 
 namespace {
 
+using terramech::RefinedModel;
 using terramech::Soil;
 using terramech::SoilDeviation;
 
@@ -373,94 +319,77 @@ constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 7> kFie
      {&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m},
      {&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent}}};
 
-// Step of the central difference, in standard deviations: a half keeps parameters near their bounds in range.
-constexpr double kStep = 0.5;
+// Uncertain parameters of a model: each function adds a change to its parameter and returns the new value.
+struct UncertainParameters {
+  std::vector<std::function<double(RefinedModel&, double)>> add;
+  std::vector<double> covariance;  // row-major
+};
 
-// Standard deviation of the exponent of underGravity(): ours.
-constexpr double kGravityExponentStd = 0.5;
-
-double pullOf(const Soil& soil, const terramech::Rover& rover) {
-  return terramech::mobilityReference(soil, rover).drawbar_pull_over_load;
-}
-
-bool isStiffer(const Soil& tested, const terramech::Rover& rover) {
-  return tested.test_gravity_m_s2 > rover.gravity_m_s2;
-}
-
-// The soil on the rover's body for a gravity exponent lower by one standard deviation.
-Soil lessAffected(const Soil& tested, const terramech::Rover& rover) {
-  return underGravity(tested, rover.gravity_m_s2, 1.0 - kGravityExponentStd);
-}
-
-// Converts the prior to the gravity of the rover.
-terramech::SoilPrior onBody(terramech::SoilPrior prior, const terramech::Rover& rover) {
-  if (!isStiffer(prior.mean, rover)) return prior;
-  const double width = rover.wheel.width_m, tested = sinkageModulus(prior.mean, width);
-  prior.mean = underGravity(prior.mean, rover.gravity_m_s2);
-  const double factor = sinkageModulus(prior.mean, width) / tested;
-  prior.deviation.cohesion_Pa *= factor;
-  prior.deviation.cohesive_modulus *= factor;
-  prior.deviation.frictional_modulus *= factor;
-  return prior;
+GroundClass classOf(int number, const RefinedModel& tested, const UncertainParameters& parameters,
+                    const terramech::Rover& rover) {
+  // Step of the central difference, in standard deviations: a half keeps parameters near their bounds in range.
+  constexpr double kStep = 0.5;
+  constexpr double kGravityExponentStd = 0.5;  // of underGravity(): ours
+  const auto pullOf = [&](RefinedModel model, double exponent = 1.0) {
+    model.soil = underGravity(model.soil, rover.gravity_m_s2, exponent);
+    return terramech::mobilityReference(model, rover).drawbar_pull_over_load;
+  };
+  GroundClass ground;
+  ground.number = number;
+  ground.soil = underGravity(tested.soil, rover.gravity_m_s2);
+  ground.effects = terramech::withoutSensors(tested).effects;
+  const std::size_t count = parameters.add.size();
+  std::vector<double> slope;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double std = std::sqrt(std::max(0.0, parameters.covariance[k * count + k]));
+    RefinedModel more = tested, less = tested;
+    try {
+      const double width = parameters.add[k](more, kStep * std) - parameters.add[k](less, -kStep * std);
+      slope.push_back(width > 0.0 ? (pullOf(more) - pullOf(less)) / width : 0.0);
+    } catch (const std::invalid_argument& e) {
+      std::ostringstream text;
+      text << e.what() << "; it is the mean with half of its std " << std;
+      throw std::invalid_argument(text.str());
+    }
+  }
+  double variance = 0.0;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j)
+      variance += slope[i] * parameters.covariance[i * count + j] * slope[j];
+  if (variance > 0.0) ground.mean_std = std::sqrt(variance);
+  if (tested.soil.test_gravity_m_s2 > rover.gravity_m_s2)
+    ground.mean_std = std::hypot(ground.mean_std, pullOf(tested, 1.0 - kGravityExponentStd) - pullOf(tested));
+  return ground;
 }
 
 }  // namespace
 
-GroundClass groundClass(int number, const terramech::SoilPrior& tested, const terramech::Rover& rover) {
-  const terramech::SoilPrior prior = onBody(tested, rover);
-  GroundClass ground;
-  ground.number = number;
-  ground.soil = prior.mean;
-  ground.rut_stiffness_std = prior.deviation.rut_stiffness;
-  double variance = 0.0;
-  for (const auto& [value, deviation] : kFields) {
-    const double std = prior.deviation.*deviation;
-    if (std <= 0.0) continue;
-    Soil more = prior.mean, less = prior.mean;
-    more.*value += kStep * std;
-    less.*value = std::max(less.*value - kStep * std, 1e-3 * prior.mean.*value);
-    try {
-      const double slope = (pullOf(more, rover) - pullOf(less, rover)) / (more.*value - less.*value);
-      variance += slope * std * slope * std;
-    } catch (const std::invalid_argument& e) {
-      std::ostringstream text;
-      text << e.what() << "; it is the mean " << prior.mean.*value << " with half of its std " << std;
-      throw std::invalid_argument(text.str());
-    }
+GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover) {
+  UncertainParameters parameters;
+  parameters.covariance.resize(kFields.size() * kFields.size());
+  for (std::size_t k = 0; k < kFields.size(); ++k) {
+    const auto [field, deviation] = kFields[k];
+    parameters.covariance[k * kFields.size() + k] = std::pow(prior.deviation.*deviation, 2);
+    parameters.add.emplace_back([field](RefinedModel& model, double change) {
+      double& value = model.soil.*field;
+      return value = std::max(value + change, 1e-3 * value);
+    });
   }
-  if (variance > 0.0) ground.mean_std = std::sqrt(variance);
-  if (isStiffer(tested.mean, rover))
-    ground.mean_std = std::hypot(ground.mean_std,
-                                 pullOf(lessAffected(tested.mean, rover), rover) - pullOf(prior.mean, rover));
+  GroundClass ground = classOf(number, terramech::onSoil(prior.mean), parameters, rover);
+  ground.rut_stiffness_std = prior.deviation.rut_stiffness;
   return ground;
 }
 
-GroundClass groundClass(int number, const terramech::RefinedModel& tested, const terramech::Rover& rover) {
-  terramech::RefinedModel model = tested;
-  model.soil = underGravity(tested.soil, rover.gravity_m_s2);
-  const auto pull = [&](const terramech::RefinedModel& m) {
-    return terramech::mobilityReference(m, rover).drawbar_pull_over_load;
-  };
-  GroundClass ground;
-  ground.number = number;
-  ground.soil = model.soil;
-  ground.effects = terramech::withoutSensors(model).effects;
-  const double here = pull(model);
-  const std::size_t count = model.covariance.empty() ? 0 : model.fitted.size();
-  std::vector<double> slope;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double std = std::sqrt(std::max(0.0, model.covariance[k * count + k]));
-    terramech::RefinedModel moved = model;
-    terramech::setValue(moved, model.fitted[k], terramech::value(model, model.fitted[k]) + 0.1 * std);
-    slope.push_back(std > 0.0 ? (pull(moved) - here) / (0.1 * std) : 0.0);
-  }
-  double variance = 0.0;
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < count; ++j) variance += slope[i] * model.covariance[i * count + j] * slope[j];
-  if (variance > 0.0) ground.mean_std = std::sqrt(variance);
-  model.soil = lessAffected(tested.soil, rover);
-  if (isStiffer(tested.soil, rover)) ground.mean_std = std::hypot(ground.mean_std, pull(model) - here);
-  return ground;
+GroundClass groundClass(int number, const RefinedModel& model, const terramech::Rover& rover) {
+  UncertainParameters parameters{.add = {}, .covariance = model.covariance};
+  if (!model.covariance.empty())
+    for (const terramech::FittedParameter& p : model.fitted)
+      parameters.add.emplace_back([p](RefinedModel& moved, double change) {
+        const double next = terramech::value(moved, p) + change;
+        terramech::setValue(moved, p, next);
+        return next;
+      });
+  return classOf(number, model, parameters, rover);
 }
 
 }  // namespace talus::costmap

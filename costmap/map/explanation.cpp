@@ -162,15 +162,10 @@ void addSoil(const TraversabilityMap& map, maps::Cell cell, Explanation& out) {
       {"swath_sinkage_over_radius", published->sinkage.value, published->sinkage.std, swath, ""});
 }
 
-terramech::Gradient seenBy(CellCode code, const Direction& heading) {
-  return {code.dzDx() * heading.x + code.dzDy() * heading.y,
-          code.dzDy() * heading.x - code.dzDx() * heading.y};
-}
-
 void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& heading, Explanation& out) {
   const auto grid = map.published();
   const CellCode code = grid->at(cell);
-  const auto [along, across] = seenBy(code, heading);
+  const auto [along, across] = gradientOf(code, heading);
   const double margin = map.model().parts().policy.slope_margin_rad;
   const TravelState state = grid->cost().detail(code, heading);
   const std::string asks = "slope along the heading";
@@ -233,7 +228,7 @@ void judge(const TraversabilityMap& map, maps::Cell cell, const Direction& headi
   }
   // Uses the cost and the gradient that planners read.
   const CellCode code = map.published()->at(cell);
-  const double along = seenBy(code, heading).along, climb = map.published()->cost().climb(code, heading);
+  const double along = gradientOf(code, heading).along, climb = map.published()->cost().climb(code, heading);
   const TravelState state = map.published()->cost().detail(code, heading);
   const RankedCategory here = judged(map.model(), *ground, state, climb);
   if (asked) out.category = here.category;
@@ -271,7 +266,9 @@ void readIn(const TraversabilityMap& map, Sampled& at) {
     const auto slip = static_cast<double>(grid->cost().detail(code, heading).slip);
     const double share = steady(slip).torque_over_load_radius /
                          map.model().reference(at.class_index, false).torque_over_load_radius;
-    const double rise = (steady(slip + noise.slip).gradient - steady(slip - noise.slip).gradient) / 2.0;
+    const double rise = (steady(slip + noise.slip).drawbar_pull_over_load -
+                         steady(slip - noise.slip).drawbar_pull_over_load) /
+                        2.0;
     const double error = std::hypot(noise.model_pull, std::hypot(noise.gradient, rise) / share);
     if (share < kLeastShare || error >= at.error) continue;
     at.error = error;

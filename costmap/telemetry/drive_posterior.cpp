@@ -43,7 +43,7 @@ struct Curve {
       const SteadyWheel rut =
           rutted > 0 ? model.steady(class_index, {.slip = slipAt(i), .in_rut = true}) : fresh;
       const auto at = static_cast<std::size_t>(i);
-      pull[at] = (1.0 - in_rut) * fresh.gradient + in_rut * rut.gradient;
+      pull[at] = (1.0 - in_rut) * fresh.drawbar_pull_over_load + in_rut * rut.drawbar_pull_over_load;
       share[at] = (1.0 - in_rut) * fresh.torque_over_load_radius + in_rut * rut.torque_over_load_radius;
       share[at] = std::max(share[at] / thrust, kLeastShare);
     }

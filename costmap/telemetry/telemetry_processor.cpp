@@ -145,7 +145,8 @@ GroundBound DangerWatch::bound(int class_index, const TelemetryReading& reading,
   GroundBound bound;
   const double slip = slipOf(reading), z = reading.sinkage_m / model_.rover().wheel.radius_m;
   if (slip >= kDangerSlip) {
-    const double at = model_.steady(class_index, {.slip = slip, .in_rut = reading.pass > 1}).gradient;
+    const double at =
+        model_.steady(class_index, {.slip = slip, .in_rut = reading.pass > 1}).drawbar_pull_over_load;
     bound.lower(model_.prior(class_index).pull.value + least_gradient - at + kTwoStd);
   }
   const bool torque_limit = std::abs(reading.torque_Nm) >= model_.rover().max_torque_Nm;

@@ -171,8 +171,9 @@ class Annotator {
     if (const auto cell = grid_.cellAt(inside)) {
       const auto code = input_.map.at(*cell);
       state_ = input_.map.cost().detail(code, heading);
-      vertex.slope_along_rad = std::atan(code.dzDx() * heading.x + code.dzDy() * heading.y);
-      vertex.slope_across_rad = std::atan(code.dzDy() * heading.x - code.dzDx() * heading.y);
+      const terramech::Gradient slope = gradientOf(code, heading);
+      vertex.slope_along_rad = std::atan(slope.along);
+      vertex.slope_across_rad = std::atan(slope.across);
       vertex.slip = static_cast<double>(state_.slip);
       const costmap::SlopeHold hold = input_.map.cost().hold(code, heading);
       vertex.slip_angle_rad = how_.reverse ? -hold.slip_angle_rad : hold.slip_angle_rad;

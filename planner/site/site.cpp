@@ -399,7 +399,7 @@ std::vector<int> weakestLast(const std::vector<costmap::GroundClass>& classes,
                              const terramech::Rover& rover) {
   std::vector<std::pair<double, int>> by_pull;
   for (const costmap::GroundClass& c : classes) {
-    const double mean = costmap::referenceOf(c, rover).drawbar_pull_over_load;
+    const double mean = terramech::mobilityReference(modelOf(c), rover).drawbar_pull_over_load;
     by_pull.emplace_back(2.0 * std::hypot(c.pull_std, c.mean_std) - mean, c.number);
   }
   std::ranges::sort(by_pull);

@@ -1,14 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include <talus/common/common.hpp>
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/numerics/functions.hpp>
-#include <talus/terramech/numerics/gauss_legendre.hpp>
 
 namespace talus::terramech {
 
@@ -29,7 +25,7 @@ int demotion(double value, std::optional<double> threshold, std::optional<double
 
 bool unknown(const WheelCondition& c) {
   return std::isnan(c.drawbar_pull_over_load) || std::isnan(c.sinkage_over_radius) ||
-         std::isnan(c.torque_over_load_radius.value_or(0.0)) || std::isnan(c.slip.value_or(0.0));
+         std::isnan(c.torque_over_load_radius.value_or(0.0));
 }
 
 void checkOrder(const char* what, double low, double high) {
@@ -61,7 +57,6 @@ void validate(const CategoryThresholds& t) {
   check.finite("z_critical", t.z_critical);
   check.finite("t_threshold", t.t_threshold.value_or(0.0));
   check.finite("t_critical", t.t_critical.value_or(0.0));
-  check.within("steering_slip", t.steering_slip.value_or(0.0), {0.0, 1.0});
   checkOrder("dp_low", t.dp_low, t.dp_high);
   checkOrder("z_threshold", t.z_threshold, t.z_critical);
   if (t.t_threshold && t.t_critical) checkOrder("t_threshold", *t.t_threshold, *t.t_critical);
@@ -73,86 +68,45 @@ Category categorise(const WheelCondition& condition, const CategoryThresholds& t
   rank += demotion(condition.sinkage_over_radius, t.z_threshold, t.z_critical);
   if (condition.torque_over_load_radius)
     rank += demotion(*condition.torque_over_load_radius, t.t_threshold, t.t_critical);
-  if (condition.slip) rank += demotion(*condition.slip, {}, t.steering_slip);
   return static_cast<Category>(std::min(rank, kDangerous));
 }
 
 namespace {
 
-/// Limits of the middle one of the three bands of a quantity.
-struct Bands {
-  double low, high;
-};
-
-/// Limits of a band in standard deviations from the mean. For an exact quantity (std 0) the limits of its
-/// band are -infinity and infinity (probability 1), and both limits of the other bands are infinity.
-Bands standardised(Bands edges, int band, double mean, double std, int known_band) {
-  if (std == 0.0) return band == known_band ? Bands{-kInfinity, kInfinity} : Bands{kInfinity, kInfinity};
-  const double low = (edges.low - mean) / std, high = (edges.high - mean) / std;
-  return band == 0 ? Bands{-kInfinity, low} : band == 1 ? Bands{low, high} : Bands{high, kInfinity};
+/// Probabilities of the three bands of an estimate below, between and above two limits. An exact value lies in
+/// `band`.
+std::array<double, 3> bandsOf(const Estimate& x, double low, double high, std::size_t band) {
+  std::array<double, 3> bands{};
+  if (x.std == 0.0) {
+    bands[band] = 1.0;
+    return bands;
+  }
+  const double below_low = normalProbability((low - x.value) / x.std),
+               below_high = normalProbability((high - x.value) / x.std);
+  return {below_low, below_high - below_low, 1.0 - below_high};
 }
 
-void check(const ConditionEstimate& belief) {
+void check(const UncertainWheel& wheel) {
   const RangeCheck range{"category belief"};
-  range.finite("drawbar_pull_over_load", belief.mean.drawbar_pull_over_load);
-  range.finite("sinkage_over_radius", belief.mean.sinkage_over_radius);
-  range.atLeast("drawbar_pull_over_load_std", belief.drawbar_pull_over_load_std, 0.0);
-  range.atLeast("sinkage_over_radius_std", belief.sinkage_over_radius_std, 0.0);
-  range.within("correlation", belief.correlation, {-1.0, 1.0});
-}
-
-/// Category of a pair of bands of drawbar pull DP/W and sinkage z/r, with torque and slip of the mean.
-Category categoryOf(const ConditionEstimate& belief, const CategoryThresholds& t, int pull_band,
-                    int sinkage_band) {
-  WheelCondition condition = belief.mean;
-  condition.drawbar_pull_over_load = pull_band == 0   ? t.dp_low - 1.0
-                                     : pull_band == 1 ? t.dp_low
-                                                      : t.dp_high + 1.0;
-  condition.sinkage_over_radius = sinkage_band == 0   ? t.z_threshold - 1.0
-                                  : sinkage_band == 1 ? t.z_threshold
-                                                      : t.z_critical + 1.0;
-  return categorise(condition, t);
+  range.finite("drawbar_pull_over_load", wheel.drawbar_pull_over_load.value);
+  range.finite("sinkage_over_radius", wheel.sinkage_over_radius.value);
+  range.atLeast("drawbar_pull_over_load_std", wheel.drawbar_pull_over_load.std, 0.0);
+  range.atLeast("sinkage_over_radius_std", wheel.sinkage_over_radius.std, 0.0);
 }
 
 }  // namespace
 
-double probability(const NormalRectangle& q) {
-  // int phi(y) [Phi((x2 - rho y)/s) - Phi((x1 - rho y)/s)] dy, in panels no wider than the transition of Phi.
-  constexpr auto kRule = gaussLegendre<8>();
-  const double rho = std::clamp(q.correlation, -0.999, 0.999), s = std::sqrt(1.0 - rho * rho);
-  const double low = std::max(q.y1, -8.5), high = std::min(q.y2, 8.5);
-  if (!(low < high) || !(q.x1 < q.x2)) return 0.0;
-  const double width = std::min(0.5, 3.0 * s / std::max(std::abs(rho), 1e-3));
-  const int panels = static_cast<int>(std::ceil((high - low) / width));
-  const double panel = (high - low) / panels;
-  double sum = 0.0;
-  for (int k = 0; k < panels; ++k)
-    for (std::size_t i = 0; i < kRule.node.size(); ++i) {
-      const double y = low + panel * (k + kRule.node[i]);
-      sum += kRule.weight[i] * normalDensity(y) *
-             (normalProbability((q.x2 - rho * y) / s) - normalProbability((q.x1 - rho * y) / s));
-    }
-  return sum * panel;
-}
-
-CategoryProbability categoryProbability(const ConditionEstimate& belief, const CategoryThresholds& t) {
-  check(belief);
-  validate(t);
-  const double pull = belief.mean.drawbar_pull_over_load, sinkage = belief.mean.sinkage_over_radius;
-  const int pull_band = pull < t.dp_low ? 0 : pull > t.dp_high ? 2 : 1;
-  const int sinkage_band = sinkage > t.z_critical ? 2 : sinkage < t.z_threshold ? 0 : 1;
+CategoryProbability categoryProbability(const UncertainWheel& wheel, const CategoryThresholds& t) {
+  check(wheel);
+  const auto pull_rank = static_cast<std::size_t>(rankOf(wheel.drawbar_pull_over_load.value, t)),
+             sinkage_rank = static_cast<std::size_t>(
+                 demotion(wheel.sinkage_over_radius.value, t.z_threshold, t.z_critical));
+  const auto pulls = bandsOf(wheel.drawbar_pull_over_load, t.dp_low, t.dp_high, kDangerous - pull_rank);
+  const auto sinkages = bandsOf(wheel.sinkage_over_radius, t.z_threshold, t.z_critical, sinkage_rank);
   CategoryProbability sum{};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const Bands x =
-          standardised({t.dp_low, t.dp_high}, i, pull, belief.drawbar_pull_over_load_std, pull_band);
-      const Bands y = standardised({t.z_threshold, t.z_critical}, j, sinkage, belief.sinkage_over_radius_std,
-                                   sinkage_band);
-      sum[static_cast<std::size_t>(categoryOf(belief, t, i, j))] +=
-          probability({x.low, x.high, y.low, y.high, belief.correlation});
-    }
-  const double total = sum[0] + sum[1] + sum[2];
-  for (double& p : sum) p /= total;
+  for (std::size_t i = 0; i < pulls.size(); ++i)
+    for (std::size_t j = 0; j < sinkages.size(); ++j)
+      sum[std::min<std::size_t>(kDangerous - i + j, kDangerous)] += pulls[i] * sinkages[j];
   return sum;
 }
 

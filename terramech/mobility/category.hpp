@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
-#include <vector>
+
+#include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::terramech {
 
@@ -23,7 +23,6 @@ struct WheelCondition {
   double sinkage_over_radius = 0.0;     ///< sinkage over radius, z/r [-]
   /// Torque ratio T/(rW) [-]; empty: the torque criterion is not applied.
   std::optional<double> torque_over_load_radius = {};
-  std::optional<double> slip = {};  ///< driven slip, [-1, 1]; empty: the steering criterion is not applied
 };
 
 /// Limits between the traversability categories. A criterion without limits is not applied. A category that
@@ -36,8 +35,6 @@ struct CategoryThresholds {
   /// T/(rW) at or above this limit moves the category one level down.
   std::optional<double> t_threshold = {};
   std::optional<double> t_critical = {};  ///< T/(rW) above this limit is dangerous
-  /// Slip above this limit is dangerous, because the wheel cannot be steered (ours).
-  std::optional<double> steering_slip = {};
 };
 
 /// Slope of a mission, from which thresholds() derives the drawbar-pull limits.
@@ -51,8 +48,8 @@ struct MissionSlope {
 /// std::invalid_argument unless slope >= 0, margin >= 0 and slope + margin < pi/2.
 CategoryThresholds thresholds(const MissionSlope& mission);
 
-/// Throws std::invalid_argument that names the limit if a limit is not finite, if a lower limit exceeds its
-/// upper limit, or if steering_slip is outside [0, 1].
+/// Throws std::invalid_argument that names the limit if a limit is not finite, or if a lower limit exceeds its
+/// upper limit.
 void validate(const CategoryThresholds& thresholds);
 
 /// Returns the traversability category of a wheel by the rule of thesis 3.5, with its strict inequalities.
@@ -62,31 +59,17 @@ void validate(const CategoryThresholds& thresholds);
 /// by torque combine; here the reductions add. The category is Unknown if a given number is NaN.
 Category categorise(const WheelCondition& condition, const CategoryThresholds& thresholds);
 
-/// Uncertain state of a wheel at the reference slip. Drawbar pull over load DP/W and sinkage over radius z/r
-/// are jointly Gaussian; torque and slip are exact.
-struct ConditionEstimate {
-  WheelCondition mean;                      ///< state of the wheel, with the means of DP/W and z/r
-  double drawbar_pull_over_load_std = 0.0;  ///< standard deviation of DP/W [-], >= 0; 0: exactly known
-  double sinkage_over_radius_std = 0.0;     ///< standard deviation of z/r [-], >= 0; 0: exactly known
-  double correlation = 0.0;                 ///< correlation of DP/W and z/r in [-1, 1]; limited to +-0.999
+/// Drawbar pull over load DP/W and sinkage over radius z/r of a wheel, independent normal estimates [-].
+struct UncertainWheel {
+  Estimate drawbar_pull_over_load, sinkage_over_radius;
 };
 
 /// Probabilities of the categories Safe, Marginal and Dangerous, in this order, with sum 1.
 using CategoryProbability = std::array<double, 3>;
 
-/// Returns the probability of each traversability category that categorise() can return for the uncertain
-/// state of a wheel (ours; the thesis proposes fuzzy sets as future work). The error is below 1e-6 for
-/// |correlation| <= 0.999. Throws std::invalid_argument if DP/W, z/r, a standard deviation, the correlation
-/// or a limit is outside its range or NaN.
-CategoryProbability categoryProbability(const ConditionEstimate& belief,
-                                        const CategoryThresholds& thresholds);
-
-/// Rectangle x1 <= X < x2, y1 <= Y < y2 in the plane of two standard normal variables X and Y with the given
-/// correlation. The bounds may be infinite. probability() returns the probability that (X, Y) is in the
-/// rectangle.
-struct NormalRectangle {
-  double x1, x2, y1, y2, correlation;  ///< bounds and correlation [-]
-};
-double probability(const NormalRectangle& rectangle);
+/// Returns the probability of each category that categorise() can return for an uncertain wheel (ours; the
+/// thesis proposes fuzzy sets as future work). A standard deviation of 0 states an exact value. Throws
+/// std::invalid_argument if an estimate is NaN or a standard deviation negative.
+CategoryProbability categoryProbability(const UncertainWheel& wheel, const CategoryThresholds& thresholds);
 
 }  // namespace talus::terramech

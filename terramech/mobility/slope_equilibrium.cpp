@@ -16,75 +16,42 @@
 
 namespace talus::terramech {
 
-namespace {
-
-void require(const Rover& rover, const MobilityOptions& options) {
+SteadyWheel mobilityReference(const RefinedModel& model, const Rover& rover, int pass) {
+  requireForces(model);
   validate(rover);
-  const RangeCheck check{"mobility options"};
-  check.within("reference_slip", options.reference_slip, {1e-6, 1.0 - 1e-6});
-  check.atLeast("pass", options.pass, 1.0);
-}
-
-MobilityReference referenceBy(const WheelForces& f, const Rover& rover, double slip) {
+  RangeCheck{"wheel"}.atLeast("pass", pass, 1.0);
+  const RefinedModel ground = withoutSensors(model);
   const double load_N = wheelLoad_N(rover), radius_m = rover.wheel.radius_m;
-  return {slip, f.drawbar_pull_N / load_N, std::min(f.sinkage_m / radius_m, 1.0),
-          f.torque_Nm / (load_N * radius_m)};
-}
-
-// Forces of a wheel; sunk to its axle if the soil cannot carry it.
-WheelForces forcesOn(const Soil& soil, const Rover& rover, double slip) {
-  const WheelOperation operation{.load_N = wheelLoad_N(rover), .slip = slip};
-  try {
-    return equilibrium(soil, rover.wheel, operation);
-  } catch (const std::domain_error&) {
-    return forcesAtEntry(soil, rover.wheel, {.slip = slip}, 0.5 * std::numbers::pi).forces;
+  const auto over = [&](const auto& f) {
+    return SteadyWheel{f.drawbar_pull_N / load_N, std::min(f.sinkage_m / radius_m, 1.0),
+                       f.torque_Nm / (load_N * radius_m)};
+  };
+  if (!ground.effects.empty()) {
+    WheelState state = steadyWheel(rover, load_N, kReferenceSlip);
+    state.pass_index = pass;
+    state.slope_rad = 0.0;
+    return over(predict(ground, state));
   }
-}
-
-}  // namespace
-
-MobilityReference mobilityReference(const Soil& soil, const Rover& rover, const MobilityOptions& options) {
-  validate(soil);
-  require(rover, options);
-  return referenceBy(forcesOn(soil, rover, options.reference_slip), rover, options.reference_slip);
-}
-
-MobilityReference mobilityReference(const RefinedModel& model, const Rover& rover,
-                                    const MobilityOptions& options) {
-  validate(model.soil);
-  if (model.base == BaseModel::LinearFormula)
-    throw std::invalid_argument(
-        "model 'linear-formula' computes drawbar pull from a measured torque and cannot predict slip on a "
-        "slope; trace the data with model: wong-reece");
-  require(rover, options);
-  WheelState state = steadyWheel(rover, wheelLoad_N(rover), options.reference_slip);
-  state.pass_index = options.pass;
-  state.slope_rad = 0.0;
-  const Reading reading = predict(withoutSensors(model), state);
-  return referenceBy({.sinkage_m = reading.sinkage_m,
-                      .entry_angle_rad = 0.0,
-                      .torque_Nm = reading.torque_Nm,
-                      .drawbar_pull_N = reading.drawbar_pull_N},
-                     rover, options.reference_slip);
+  try {
+    return over(equilibrium(ground.soil, rover.wheel, {.load_N = load_N, .slip = kReferenceSlip}));
+  } catch (const std::domain_error&) {  // sunk to its axle
+    return over(
+        forcesAtEntry(ground.soil, rover.wheel, {.slip = kReferenceSlip}, 0.5 * std::numbers::pi).forces);
+  }
 }
 
 namespace {
 
 constexpr double kSunk = 0.999;  // sinkage over radius, z/r, of a wheel sunk to its axle
-constexpr double kMostStrength = SlopeEquilibrium::kMostStrength, kStrengthError = 5e-4;
+constexpr double kMostStrength = SlopeEquilibrium::kMostStrength, kStrengthError = 5e-4,
+                 kMostSlip = SlopeEquilibrium::kMostSlip,
+                 kMostSlipAngle_rad = SlopeEquilibrium::kMostSlipAngle_rad;
 
 /// Returns the force components along and across the direction of travel, for a wheel plane at angle beta to
 /// the right of that direction.
 Planar turned(double along_wheel, double across_wheel, double beta) {
   const double c = std::cos(beta), s = std::sin(beta);
   return {along_wheel * c + across_wheel * s, across_wheel * c - along_wheel * s};
-}
-
-const SlopeOptions& checked(const SlopeOptions& options) {
-  const RangeCheck check{"slope options"};
-  check.within("max_slip", options.max_slip, {1e-6, 1.0});
-  check.within("max_slip_angle_rad", options.max_slip_angle_rad, {1e-6, 1.04});
-  return options;
 }
 
 }  // namespace
@@ -96,12 +63,8 @@ Planar demandOf(const Gradient& g) noexcept {
 
 class SlopeEquilibrium::Solver {
  public:
-  Solver(WheelForcesTable fresh, WheelForcesTable rut, const Rover& rover, const SlopeOptions& options)
-      : fresh_(std::move(fresh)),
-        rut_(std::move(rut)),
-        rover_(rover),
-        options_(checked(options)),
-        stance_(rover) {
+  Solver(WheelForcesTable fresh, WheelForcesTable rut, const Rover& rover)
+      : fresh_(std::move(fresh)), rut_(std::move(rut)), rover_(rover), stance_(rover) {
     for (std::size_t a = 0; a < even_in_rut_.size(); ++a)
       for (int axle = 0; axle < stance_.wheels() / 2; ++axle)
         even_in_rut_[a] +=
@@ -111,15 +74,11 @@ class SlopeEquilibrium::Solver {
   SlopeState at(const Gradient& gradient, double strength) const noexcept;
   double leastStrength(const Gradient& gradient, double near) const noexcept;
   std::vector<WheelOnSlope> wheels(const Gradient& gradient, const SlopeState& state, double strength) const;
-  WheelOnSlope wheel(const WheelMotion& motion, double in_rut, double strength) const noexcept;
-  WheelOnSlope evenWheel(const WheelMotion& motion, bool in_rut) const noexcept {
-    return wheel({motion.load_N * wheelLoad_N(rover_), motion.slip, motion.slip_angle_rad},
-                 in_rut ? 1.0 : 0.0, 1.0);
-  }
+  SteadyWheel evenWheel(WheelMotion motion, bool in_rut) const noexcept;
   const RoverStance& stance() const { return stance_; }
   Solver withoutRuts() const {
     Solver fresh = *this;
-    fresh.options_.ruts = false;
+    fresh.ruts_ = false;
     fresh.even_in_rut_.fill(0.0);
     return fresh;
   }
@@ -169,7 +128,7 @@ class SlopeEquilibrium::Solver {
 
   WheelForcesTable fresh_, rut_;
   Rover rover_;
-  SlopeOptions options_;
+  bool ruts_ = true;  // false: later axles roll on fresh ground, too
   RoverStance stance_;
   std::array<double, WheelForcesTable::kAngles> even_in_rut_{};  // mean share of all wheels, by angle node
 };
@@ -216,7 +175,7 @@ WheelMotion SlopeEquilibrium::Solver::motionOf(int wheel, const Unknowns& u) con
 /// The wheels of an axle at the distance d behind the front axle roll beside its ruts by d sin(body angle).
 SlopeEquilibrium::Solver::RutShare SlopeEquilibrium::Solver::rutOf(int axle,
                                                                    double angle_rad) const noexcept {
-  if (axle == 0 || !options_.ruts) return {};
+  if (axle == 0 || !ruts_) return {};
   if (rover_.steering == Steering::AllWheel) return {.value = 1.0};
   const double behind_m = stance_.position_m(0).x - stance_.position_m(2 * axle).x,
                widths = behind_m / rover_.wheel.width_m, off = widths * std::sin(angle_rad),
@@ -323,7 +282,7 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Ground& grou
       reached = true;
       break;
     }
-    if (a == 0) out.pulls = reached && slip <= options_.max_slip;
+    if (a == 0) out.pulls = reached && slip <= kMostSlip;
     if (reached) {
       if (!out.found && hold >= wanted) {
         const double share = last && hold > last_side ? (wanted - last_side) / (hold - last_side) : 1.0;
@@ -335,7 +294,7 @@ SlopeEquilibrium::Solver::Scan SlopeEquilibrium::Solver::scan(const Ground& grou
     }
     if (!out.found && last && !reached) {
       // The pull suffices up to an angle within this step.
-      out.start.slip = 0.5 * (last_slip + options_.max_slip);
+      out.start.slip = 0.5 * (last_slip + kMostSlip);
       out.start.angle_rad = 0.0 - side * (beta - 0.5 * WheelForcesTable::kAngleStep_rad);
       out.found = true;
     }
@@ -425,14 +384,14 @@ double SlopeEquilibrium::Solver::leastStrength(const Gradient& gradient, double 
 
 bool SlopeEquilibrium::Solver::isSteady(const Unknowns& u) const noexcept {
   const double difference = rover_.steering == Steering::Skid ? 0.5 * std::abs(u.difference) : 0.0;
-  return u.slip + difference <= options_.max_slip && std::abs(u.angle_rad) <= options_.max_slip_angle_rad;
+  return u.slip + difference <= kMostSlip && std::abs(u.angle_rad) <= kMostSlipAngle_rad;
 }
 
 SlopeFailure SlopeEquilibrium::Solver::gripOf(const SlopeState& state, const Unknowns& u) const noexcept {
   if (state.sinkage_m > kSunk * rover_.wheel.radius_m || state.sinkage_m >= rover_.clearance_m)
     return SlopeFailure::Sinks;
-  if (state.slip + 0.5 * std::abs(state.slip_difference) > options_.max_slip) return SlopeFailure::CannotPull;
-  if (std::abs(u.angle_rad) > options_.max_slip_angle_rad) return SlopeFailure::Slides;
+  if (state.slip + 0.5 * std::abs(state.slip_difference) > kMostSlip) return SlopeFailure::CannotPull;
+  if (std::abs(u.angle_rad) > kMostSlipAngle_rad) return SlopeFailure::Slides;
   if (std::abs(state.torque_Nm) > rover_.max_torque_Nm) return SlopeFailure::Torque;
   return SlopeFailure::None;
 }
@@ -473,31 +432,31 @@ std::vector<WheelOnSlope> SlopeEquilibrium::Solver::wheels(const Gradient& gradi
   for (int k = 0; k < stance_.wheels(); ++k) {
     WheelMotion motion = motionOf(k, u);
     motion.load_N = shares[static_cast<std::size_t>(k)] * normal;
-    all.push_back(wheel(motion, rutOf(k / 2, turn).value, strength));
+    const WheelRatios f = forces(motion, rutOf(k / 2, turn), strength);
+    const double r = rover_.wheel.radius_m, load_N = motion.load_N;
+    all.push_back({load_N, motion.slip, motion.slip_angle_rad, f.value[kSinkageRatio] * r,
+                   f.value[kTorqueRatio] * load_N * r, f.value[kPullRatio] * load_N,
+                   f.value[kSideRatio] * load_N});
   }
   return all;
 }
 
-WheelOnSlope SlopeEquilibrium::Solver::wheel(const WheelMotion& motion, double in_rut,
-                                             double strength) const noexcept {
-  const WheelRatios f = forces(motion, {.value = in_rut}, strength);
-  const double r = rover_.wheel.radius_m, load_N = motion.load_N;
-  return {load_N,
-          motion.slip,
-          motion.slip_angle_rad,
-          f.value[kSinkageRatio] * r,
-          f.value[kTorqueRatio] * load_N * r,
-          f.value[kPullRatio] * load_N,
-          f.value[kSideRatio] * load_N};
+SteadyWheel SlopeEquilibrium::Solver::evenWheel(WheelMotion motion, bool in_rut) const noexcept {
+  const auto under = [&](double load_N) {
+    motion.load_N = load_N;
+    return forces(motion, {.value = in_rut ? 1.0 : 0.0}, 1.0).value;
+  };
+  const double even_N = wheelLoad_N(rover_);
+  const auto f = under(even_N / std::hypot(1.0, under(even_N)[kPullRatio]));
+  return {f[kPullRatio], f[kSinkageRatio], f[kTorqueRatio], std::abs(f[kSideRatio])};
 }
 
-SlopeEquilibrium::SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options)
-    : solver_(std::make_shared<const Solver>(WheelForcesTable(soil, rover),
-                                             WheelForcesTable(rutted(soil), rover), rover, options)) {}
+SlopeEquilibrium::SlopeEquilibrium(const Soil& soil, const Rover& rover)
+    : SlopeEquilibrium(onSoil(soil), rover) {}
 
-SlopeEquilibrium::SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options)
+SlopeEquilibrium::SlopeEquilibrium(const RefinedModel& model, const Rover& rover)
     : solver_(std::make_shared<const Solver>(WheelForcesTable(model, rover, 1),
-                                             WheelForcesTable(rutted(model), rover, 2), rover, options)) {}
+                                             WheelForcesTable(rutted(model), rover, 2), rover)) {}
 
 SlopeState SlopeEquilibrium::at(const Gradient& gradient, double strength) const noexcept {
   return solver_->at(gradient, strength);
@@ -512,12 +471,8 @@ std::vector<WheelOnSlope> SlopeEquilibrium::wheels(const Gradient& gradient, con
   return solver_->wheels(gradient, state, strength);
 }
 
-WheelOnSlope SlopeEquilibrium::evenWheel(double slip, double slip_angle_rad, bool in_rut) const noexcept {
-  const auto onSlope = [&](double pull) {
-    return solver_->evenWheel({1.0 / std::hypot(1.0, pull), slip, slip_angle_rad}, in_rut);
-  };
-  const WheelOnSlope level = onSlope(0.0);
-  return onSlope(level.drawbar_pull_N / level.load_N);
+SteadyWheel SlopeEquilibrium::evenWheel(double slip, double slip_angle_rad, bool in_rut) const noexcept {
+  return solver_->evenWheel({.slip = slip, .slip_angle_rad = slip_angle_rad}, in_rut);
 }
 
 SlopeEquilibrium::SlopeEquilibrium(std::shared_ptr<const Solver> solver) : solver_(std::move(solver)) {}

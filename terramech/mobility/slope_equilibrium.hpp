@@ -9,34 +9,27 @@
 
 namespace talus::terramech {
 
-/// Wheel of a MobilityReference.
-struct MobilityOptions {
-  double reference_slip = 0.5;  ///< slip at which traversability is assessed, (0, 1) (thesis 3.5)
-  int pass = 1;                 ///< pass number of the wheel over its track, >= 1, for multipass effects
-};
-
-/// State of a wheel with load W and radius r at a given slip on level ground.
-struct MobilityReference {
-  double slip = 0.0;                     ///< the given slip [-]
-  double drawbar_pull_over_load = 0.0;   ///< drawbar pull over load, DP/W [-]
-  double sinkage_over_radius = 0.0;      ///< sinkage over radius, z/r [-]; 1: the soil cannot carry the wheel
+/// Quantities of a wheel with load W and radius r that drives at constant speed.
+struct SteadyWheel {
+  double drawbar_pull_over_load = 0.0;   ///< DP/W [-]; the gradient that an even wheel climbs
+  double sinkage_over_radius = 0.0;      ///< z/r [-]; 1: the soil cannot carry the wheel
   double torque_over_load_radius = 0.0;  ///< torque ratio T/(rW) [-]
+  double side_force_over_load = 0.0;     ///< side force that resists sideways motion, over load, >= 0 [-]
 };
 
-/// Return the state of a wheel of a rover at the reference slip, the input of categorise(). A model acts
-/// without its sensor errors; its effects act only if their covariates are known: speed, rim speed (the rover's
-/// maximum), pass and slope 0. Throw std::invalid_argument for a soil, rover or option out of range, and for the
-/// base model linear-formula, which needs a measured torque.
-MobilityReference mobilityReference(const Soil& soil, const Rover& rover,
-                                    const MobilityOptions& options = {});
-MobilityReference mobilityReference(const RefinedModel& model, const Rover& rover,
-                                    const MobilityOptions& options = {});
+/// Slip at which traversability is assessed (thesis 3.5) [-].
+inline constexpr double kReferenceSlip = 0.5;
+
+/// Returns the state of a wheel of a rover at the reference slip on level ground, the input of categorise(), on its
+/// pass >= 1 over the track. A model acts without its sensor errors; its effects act only if their covariates are
+/// known: speed, rim speed (the rover's maximum), pass and slope 0. Throws std::invalid_argument for a soil, rover
+/// or pass out of range, and for the base model linear-formula, which needs a measured torque.
+SteadyWheel mobilityReference(const RefinedModel& model, const Rover& rover, int pass = 1);
 
 /// Steady motion of a rover over an inclined plane in any direction: the slip and slip angle at which the
 /// wheel forces balance the weight.
 
 struct Planar;
-struct RefinedModel;
 
 /// Gradient (rise over horizontal run) of an inclined plane, relative to the direction of travel [-].
 struct Gradient {
@@ -49,22 +42,12 @@ struct Gradient {
 /// a^2 + c^2) / sqrt(1 + a^2), and the component y across is c / sqrt(1 + a^2).
 Planar demandOf(const Gradient& gradient) noexcept;
 
-/// Limits of slip and slip angle for a SlopeEquilibrium.
-struct SlopeOptions {
-  /// Slip above which the rover is immobilised, (0, 1] (ours).
-  double max_slip = 0.8;
-  /// Slip angle [rad] above which the rover slides, (0, 1.04]. The wheel model was compared with data up to
-  /// 45 deg (ours).
-  double max_slip_angle_rad = 0.7854;
-  bool ruts = true;  ///< false: later axles roll on fresh ground, too
-};
-
 /// Reason why a rover has no steady motion over a plane.
 enum class SlopeFailure {
   None,        ///< no failure: the rover has a steady motion
   Tips,        ///< the vertical through the centre of mass passes an edge of the outermost wheels
   Sinks,       ///< a wheel sinks to its axle, or by the rover's ground clearance
-  CannotPull,  ///< the drawbar pull is insufficient uphill at any slip up to max_slip
+  CannotPull,  ///< the drawbar pull is insufficient uphill at any slip up to kMostSlip
   Slides,      ///< the wheel forces do not hold the rover downhill or across the slope
   Torque       ///< a wheel needs a torque above max_torque_Nm
 };
@@ -130,11 +113,14 @@ struct WheelOnSlope {
 /// Pitch and roll limits of the rover are not checked. Immutable, cheap to copy, thread-safe.
 class SlopeEquilibrium {
  public:
-  /// Prepares the solver for a soil, or for a wheel model with effects. Throws std::invalid_argument if soil,
-  /// rover or an option is outside its range.
-  SlopeEquilibrium(const Soil& soil, const Rover& rover, const SlopeOptions& options = {});
-  SlopeEquilibrium(const RefinedModel& model, const Rover& rover, const SlopeOptions& options = {});
+  /// Prepares the solver for a soil, or for a wheel model with effects. Throws std::invalid_argument if soil or
+  /// rover is outside its range.
+  SlopeEquilibrium(const Soil& soil, const Rover& rover);
+  SlopeEquilibrium(const RefinedModel& model, const Rover& rover);
 
+  static constexpr double kMostSlip = 0.8;  ///< slip above which the rover is immobilised (ours) [-]
+  /// Slip angle above which the rover slides: the wheel model was compared with data up to 45 deg (ours).
+  static constexpr double kMostSlipAngle_rad = 0.7854;
   static constexpr double kMostStrength = 5.0;  ///< greatest result of leastStrength() [-]
 
   /// Returns the steady motion over a plane with this gradient on ground of the given strength >= 0, or the
@@ -152,13 +138,14 @@ class SlopeEquilibrium {
                                    double strength = 1.0) const;
 
   /// Returns the state of one wheel that carries an equal share of the weight straight up the slope that its
-  /// drawbar pull climbs, on fresh ground or in the rut of an equal wheel. The slip must be in [-1, 1] and the slip angle within 60 deg.
-  WheelOnSlope evenWheel(double slip, double slip_angle_rad, bool in_rut = false) const noexcept;
+  /// drawbar pull climbs, on fresh ground or in the rut of an equal wheel. The slip must be in [-1, 1] and the slip
+  /// angle within 60 deg.
+  SteadyWheel evenWheel(double slip, double slip_angle_rad, bool in_rut = false) const noexcept;
 
   /// Returns true if the centre of mass is on the longitudinal axis of the rover.
   bool symmetric() const noexcept;
 
-  /// Returns a copy with SlopeOptions::ruts = false.
+  /// Returns a copy whose later axles roll on fresh ground, too.
   SlopeEquilibrium withoutRuts() const;
 
  private:

@@ -16,6 +16,20 @@ Soil rutted(const Soil& soil) {
   return rut;
 }
 
+RefinedModel onSoil(const Soil& soil) {
+  RefinedModel model;
+  model.soil = soil;
+  return model;
+}
+
+void requireForces(const RefinedModel& model) {
+  validate(model.soil);
+  if (model.base == BaseModel::LinearFormula)
+    throw std::invalid_argument(
+        "model 'linear-formula' computes drawbar pull from a measured torque and cannot predict slip on a "
+        "slope; trace the data with model: wong-reece");
+}
+
 RefinedModel rutted(const RefinedModel& model) {
   RefinedModel rut = model;
   if (!knowsPasses(model.effects)) rut.soil = rutted(model.soil);
@@ -101,49 +115,39 @@ std::vector<WheelMotion> WheelForcesTable::motions(double even_load_N) {
   return all;
 }
 
-WheelForcesTable::WheelForcesTable(const Soil& soil, const Rover& rover) : even_load_N_(wheelLoad_N(rover)) {
-  validate(soil);
-  validate(rover);
-  const std::vector<WheelMotion> all = motions(even_load_N_);
-  std::vector<WheelCase> cases;
-  cases.reserve(all.size());
-  for (const WheelMotion& m : all)
-    cases.push_back(wheelCase(soil, rover.wheel,
-                              {.load_N = m.load_N,
-                               .slip = m.slip,
-                               .slip_angle_rad = m.slip_angle_rad,
-                               .gravity_m_s2 = rover.gravity_m_s2}));
-  std::vector<WheelForces> forces(cases.size());
-  equilibria(cases, forces);
-  std::vector<Node> nodes;
-  nodes.reserve(all.size());
-  for (std::size_t k = 0; k < all.size(); ++k)
-    nodes.push_back(std::isfinite(forces[k].sinkage_m)
-                        ? ratios(forces[k], all[k].load_N, rover.wheel.radius_m)
-                        : onAxle(soil, rover, all[k]));
-  tabulate(nodes);
-}
-
 WheelForcesTable::WheelForcesTable(const RefinedModel& model, const Rover& rover, int pass)
     : even_load_N_(wheelLoad_N(rover)) {
-  validate(model.soil);
+  requireForces(model);
   validate(rover);
-  if (model.base == BaseModel::LinearFormula)
-    throw std::invalid_argument(
-        "model 'linear-formula' computes drawbar pull from a measured torque and predicts none on a slope; "
-        "trace the data with model: wong-reece");
   RefinedModel ground = withoutSensors(model);
   ground.slip_along_travel = false;
-  std::vector<WheelState> states;
-  for (const WheelMotion& m : motions(even_load_N_)) {
-    states.push_back(steadyWheel(rover, m.load_N, m.slip, m.slip_angle_rad));
-    states.back().pass_index = pass;
-  }
-  SolvedContacts solved;
+  const std::vector<WheelMotion> all = motions(even_load_N_);
   std::vector<Node> nodes;
-  for (const Reading& r : predict(ground, states, solved))
-    nodes.push_back({r.drawbar_pull_N / r.load_N, r.side_force_N / r.load_N,
-                     r.torque_Nm / (r.load_N * r.radius_m), std::min(r.sinkage_m / r.radius_m, 1.0)});
+  if (ground.effects.empty()) {
+    std::vector<WheelCase> cases;
+    for (const WheelMotion& m : all)
+      cases.push_back(wheelCase(ground.soil, rover.wheel,
+                                {.load_N = m.load_N,
+                                 .slip = m.slip,
+                                 .slip_angle_rad = m.slip_angle_rad,
+                                 .gravity_m_s2 = rover.gravity_m_s2}));
+    std::vector<WheelForces> forces(cases.size());
+    equilibria(cases, forces);
+    for (std::size_t k = 0; k < all.size(); ++k)
+      nodes.push_back(std::isfinite(forces[k].sinkage_m)
+                          ? ratios(forces[k], all[k].load_N, rover.wheel.radius_m)
+                          : onAxle(ground.soil, rover, all[k]));
+  } else {
+    std::vector<WheelState> states;
+    for (const WheelMotion& m : all) {
+      states.push_back(steadyWheel(rover, m.load_N, m.slip, m.slip_angle_rad));
+      states.back().pass_index = pass;
+    }
+    SolvedContacts solved;
+    for (const Reading& r : predict(ground, states, solved))
+      nodes.push_back({r.drawbar_pull_N / r.load_N, r.side_force_N / r.load_N,
+                       r.torque_Nm / (r.load_N * r.radius_m), std::min(r.sinkage_m / r.radius_m, 1.0)});
+  }
   tabulate(nodes);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <vector>
 
 #include <talus/terramech/contact/wheel_on_soil.hpp>
@@ -24,6 +23,12 @@ inline WheelState steadyWheel(const Rover& rover, double load_N, double slip, do
   state.gravity_m_s2 = rover.gravity_m_s2;
   return state;
 }
+
+/// Returns the Wong-Reece model on a soil, without effects.
+RefinedModel onSoil(const Soil& soil);
+
+/// Throws std::invalid_argument if the soil of a model is out of range, or for the base model linear-formula.
+void requireForces(const RefinedModel& model);
 
 /// Returns the soil in the rut of an equal wheel: k_c and k_phi times Soil::rut_stiffness r, K over sqrt(r). When a plate
 /// reloads soil, the soil is some tens of times stiffer (wong_2001, response to repetitive loading), but a slipping
@@ -70,12 +75,9 @@ class WheelForcesTable {
   static constexpr int kSlips = 41, kAngles = 16, kLoads = 5;
   static constexpr double kSlipStep = 0.05, kAngleStep_rad = 0.0698131700797732;  // 4 deg, to 60 deg
 
-  /// Tabulates the forces on a soil, for loads of 0.2 to 4.8 even loads. Throws the std::invalid_argument
-  /// exceptions of wheel_on_soil.hpp.
-  WheelForcesTable(const Soil& soil, const Rover& rover);
-
-  /// Tabulates a wheel model with effects, without sensor errors, at the rover's maximum speed and a
-  /// pass >= 1; this takes 20 times as long. Throws std::invalid_argument also for the base model linear-formula.
+  /// Tabulates the forces of a wheel model without its sensor errors, for loads of 0.2 to 4.8 even loads, at the
+  /// rover's maximum speed and a pass >= 1; with effects this takes 20 times as long. Throws the
+  /// std::invalid_argument exceptions of wheel_on_soil.hpp and requireForces().
   WheelForcesTable(const RefinedModel& model, const Rover& rover, int pass = 1);
 
   /// Returns the interpolated quantities. Slip is clamped to [-1, 1], the slip angle to +-60 deg, and the
@@ -92,7 +94,6 @@ class WheelForcesTable {
 
  private:
   using Node = std::array<double, kWheelChannels>;
-  using Solve = std::function<Node(const WheelMotion&)>;
   void tabulate(const std::vector<Node>& nodes);
   static std::vector<WheelMotion> motions(double even_load_N);
 

@@ -40,8 +40,8 @@ std::shared_ptr<const GroundModel> modelOf(const terramech::Rover& rover, Ground
 }
 
 double pullAt(const GroundModel& model, double slip) {
-  return (model.steady(0, {.slip = slip}).gradient +
-          2.0 * model.steady(0, {.slip = slip, .in_rut = true}).gradient) /
+  return (model.steady(0, {.slip = slip}).drawbar_pull_over_load +
+          2.0 * model.steady(0, {.slip = slip, .in_rut = true}).drawbar_pull_over_load) /
          3.0;
 }
 
@@ -138,9 +138,9 @@ int main() {
         const LearnedClass& one = report.learned.front();
         std::printf(
             "| %.3f | %s | %s | %+.2f, %.2f | %.3f +- %.3f | %.3f +- %.3f | %.3f | %d -> %d | %d -> %d |\n",
-            truth->reference(0, false).gradient, name, twice ? "two" : "one", report.slip_offset,
-            report.slip_scale, one.pull.value, one.pull.std, one.if_sound.value, one.if_sound.std,
-            one.counted_on, before.first, after.first, before.second, after.second);
+            truth->reference(0, false).drawbar_pull_over_load, name, twice ? "two" : "one",
+            report.slip_offset, report.slip_scale, one.pull.value, one.pull.std, one.if_sound.value,
+            one.if_sound.std, one.counted_on, before.first, after.first, before.second, after.second);
       }
     }
 }

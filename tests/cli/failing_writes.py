@@ -45,7 +45,7 @@ CALLS = [
     ([sys.executable, "-c", C_SAVE, "LAST", LIBTALUS], ["m.ot"], 4),
     *[([sys.executable, "-c", PYTHON_SAVE], ["m.ot"], 4) for _ in sys.argv[4:]],
     ([TALUS, "costmap", *GROUND, "--octovis"], ["o.ot"], 4),
-    ([TALUS, "costmap", *GROUND, "--geotiff"], ["l.tif"], 2),
+    ([TALUS, "costmap", *GROUND, "--geotiff"], ["l.tif", "l.qml"], 4),
     ([TALUS, "costmap", *GROUND, "--categories"], ["c.tif", "c.qml"], 4),
     ([TALUS, "costmap", *GROUND, "--nav2"], ["n.yaml", "n.pgm"], 4),
     ([TALUS, "costmap", *GROUND, "--png"], ["c.png"], 2),

@@ -90,8 +90,8 @@ inline Drive driveOver(const TraversabilityMap& map, const terramech::Soil& soil
   std::normal_distribution<double> noise;
   const int axles = rover.wheel_count / 2;
   const auto pullAt = [&](double slip) {
-    return (truth->steady(0, {slip, false}).gradient +
-            (axles - 1) * truth->steady(0, {slip, true}).gradient) /
+    return (truth->steady(0, {slip, false}).drawbar_pull_over_load +
+            (axles - 1) * truth->steady(0, {slip, true}).drawbar_pull_over_load) /
            axles;
   };
   Drive out;

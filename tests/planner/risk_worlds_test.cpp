@@ -41,8 +41,8 @@ RiskyGround riskyGround(double steepest) {
   parts.policy.risk_weight_J = 0.0;
   const costmap::GroundModel model(parts);
   RiskyGround ground;
-  ground.rover = std::make_shared<const terramech::SlopeEquilibrium>(parts.classes[0].soil, parts.rover,
-                                                                     terramech::SlopeOptions{.ruts = false});
+  ground.rover = std::make_shared<const terramech::SlopeEquilibrium>(
+      terramech::SlopeEquilibrium(parts.classes[0].soil, parts.rover).withoutRuts());
   ground.thrust = model.reference(0, false).torque_over_load_radius;
   ground.pull_std = model.prior(0).pull.std;
   ground.shared = std::pow(parts.classes[0].mean_std / ground.pull_std, 2);

@@ -93,9 +93,9 @@ PublishedCase singleWheel() {
   rover.mass_kg = 4.0 * 171.7 / rover.gravity_m_s2;
   const SlopeEquilibrium ours(loadSoilPrior("lunar_nominal").mean, rover);
   for (const SlipOnSlope& at : kPoints) {
-    const WheelOnSlope wheel = ours.evenWheel(at.slip, 0.0);
-    made.lines.push_back({fmt::format("slip {:.2f}, DP/W [-]", at.slip), std::tan(at.slope_deg * kDegree),
-                          wheel.drawbar_pull_N / wheel.load_N, false});
+    const double pull = ours.evenWheel(at.slip, 0.0).drawbar_pull_over_load;
+    made.lines.push_back(
+        {fmt::format("slip {:.2f}, DP/W [-]", at.slip), std::tan(at.slope_deg * kDegree), pull, false});
   }
   return made;
 }

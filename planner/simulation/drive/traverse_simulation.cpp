@@ -324,10 +324,7 @@ class Drive {
     const auto cell = map_.grid().cellAt(here_);
     return cell ? map_.published()->at(*cell) : costmap::CellCode();
   }
-  double gradient(const Direction& heading) const {
-    const costmap::CellCode code = ground();
-    return code.dzDx() * heading.x + code.dzDy() * heading.y;
-  }
+  double gradient(const Direction& heading) const { return gradientOf(ground(), heading).along; }
   Motion motion(const Direction& heading, double dug_m) const {
     return {.place = here_,
             .heading = heading,

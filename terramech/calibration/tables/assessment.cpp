@@ -11,13 +11,9 @@ namespace talus::terramech {
 namespace {
 
 void judge(Assessment& a, const CategoryThresholds& limits) {
-  const WheelCondition mean{.drawbar_pull_over_load = a.pull.value,
-                            .sinkage_over_radius = a.sinkage_over_radius.value};
-  a.category = categorise(mean, limits);
-  a.probability = categoryProbability({.mean = mean,
-                                       .drawbar_pull_over_load_std = a.pull.std,
-                                       .sinkage_over_radius_std = a.sinkage_over_radius.std},
-                                      limits);
+  a.category = categorise(
+      {.drawbar_pull_over_load = a.pull.value, .sinkage_over_radius = a.sinkage_over_radius.value}, limits);
+  a.probability = categoryProbability({a.pull, a.sinkage_over_radius}, limits);
 }
 
 // Forecasts the pull at other slips from the joint posterior of all rows, at the load of each row. The soil is

@@ -29,11 +29,13 @@ std::string site() {
 TEST(CategoryFiles, CategoryFilesMatchExplain) {
   const Folder folder;
   folder.write("site.asc", site());
-  const Ran ran = runTalus({"costmap", "site.asc", "--resolution", "1", "--soil", "bedrock", "--rover",
-                            "fido", "--categories", "c.tif", "--nav2", "n.yaml", "--quiet"},
-                           folder.path());
+  const Ran ran =
+      runTalus({"costmap", "site.asc", "--resolution", "1", "--soil", "bedrock", "--rover", "fido",
+                "--categories", "c.tif", "--geotiff", "l.tif", "--nav2", "n.yaml", "--quiet"},
+               folder.path());
   ASSERT_EQ(ran.code, 0) << ran.err;
-  EXPECT_EQ(folder.names(), (std::vector<std::string>{"c.qml", "c.tif", "n.pgm", "n.yaml", "site.asc"}));
+  EXPECT_EQ(folder.names(),
+            (std::vector<std::string>{"c.qml", "c.tif", "l.qml", "l.tif", "n.pgm", "n.yaml", "site.asc"}));
   const maps::Dataset file = maps::openRaster(folder / "c.tif");
   GDALRasterBand& band = *file->GetRasterBand(1);
   EXPECT_STREQ(band.GetMetadataItem("CLASS_2"), "dangerous");
@@ -42,6 +44,9 @@ TEST(CategoryFiles, CategoryFilesMatchExplain) {
       << "green";
   EXPECT_THAT(fileContent(folder / "c.qml"),
               testing::HasSubstr("value=\"2\" color=\"#9e1020\" alpha=\"255\" label=\"dangerous\""));
+  EXPECT_THAT(fileContent(folder / "l.qml"), testing::HasSubstr("band=\"8\""));
+  EXPECT_THAT(fileContent(folder / "l.qml"),
+              testing::HasSubstr("color=\"#9e1020\" alpha=\"255\" label=\"none\""));
   ASSERT_EQ(band.GetOverviewCount(), 1);
   // Property: the category of an overview cell is at least the worst category of the cells below.
   std::vector<std::uint8_t> fine(kWidth * kHeight), coarse(kWidth * kHeight / 4);

@@ -249,7 +249,7 @@ TEST(WheelObserver, HighSlipYieldsAnUpperBound) {
       ASSERT_TRUE(seen);
       EXPECT_TRUE(seen->bound);
       EXPECT_LE(seen->pull.value, prior);
-      const double departure = gradient - ground->steady(0, {slip, false}).gradient;
+      const double departure = gradient - ground->steady(0, {slip, false}).drawbar_pull_over_load;
       // Closed form: P(i) + D f(i) = g, with f from the slope, but for what a slip error of 0.03 does not explain
       const auto share = [&](const SteadyWheel& wheel) {
         return wheel.torque_over_load_radius / ground->reference(0, false).torque_over_load_radius;

@@ -9,12 +9,13 @@
 
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/mobility/wheel_forces_table.hpp>
 
 namespace talus::costmap {
 namespace ground_model_test {
 
 double pull(const terramech::Soil& soil) {
-  return terramech::mobilityReference(soil, testRover()).drawbar_pull_over_load;
+  return terramech::mobilityReference(terramech::onSoil(soil), testRover()).drawbar_pull_over_load;
 }
 
 TEST(GroundClass, SoilStdIsPropagatedToPullStd) {
@@ -76,7 +77,8 @@ TEST(GroundClass, RefinedModelKeepsItsGroundEffects) {
   EXPECT_EQ(ground.effects[0].name, "slip_sinkage_ding");
   // Property: slip sinkage makes the wheel sink deeper than in plain sand and weakens the pull at the
   // reference slip.
-  EXPECT_LT(referenceOf(ground, testRover()).drawbar_pull_over_load, pull(testSand()));
+  EXPECT_LT(terramech::mobilityReference(modelOf(ground), testRover()).drawbar_pull_over_load,
+            pull(testSand()));
 }
 
 TEST(GroundClass, PullStdFollowsFromTheModelCovariance) {
@@ -260,8 +262,8 @@ TEST(GroundModel, MaximumSlopeOfRandomSoilsIsNotOverestimated) {
           std::max(0.15, soil.friction_angle_rad + prior.deviation.friction_angle_rad * normal(random));
       soil.shear_modulus_m =
           std::max(0.004, soil.shear_modulus_m + prior.deviation.shear_modulus_m * normal(random));
-      const terramech::SlopeEquilibrium own(soil, parts.rover, {.ruts = false});
-      const auto reference = terramech::mobilityReference(soil, parts.rover);
+      const auto own = terramech::SlopeEquilibrium(soil, parts.rover).withoutRuts();
+      const auto reference = terramech::mobilityReference(terramech::onSoil(soil), parts.rover);
       GroundBelief belief = model.prior(0);
       if (belief.pull.value - reference.drawbar_pull_over_load < 0.03) continue;
       ++weak;
@@ -293,8 +295,10 @@ TEST(GroundModel, FollowingWheelsUseMultipassEffects) {
   // Estimates refer to a wheel on fresh ground, with and without ruts. Tolerance: two quadrature rules of
   // one integral, 1e-6 apart.
   EXPECT_NEAR(model.prior(0).pull.value, plain.prior(0).pull.value, 1e-5);
-  EXPECT_NEAR(model.steady(0, {.slip = 0.3}).gradient, plain.steady(0, {.slip = 0.3}).gradient, 1e-4);
-  EXPECT_GT(model.steady(0, {.slip = 0.3, .in_rut = true}).gradient, model.steady(0, {.slip = 0.3}).gradient);
+  EXPECT_NEAR(model.steady(0, {.slip = 0.3}).drawbar_pull_over_load,
+              plain.steady(0, {.slip = 0.3}).drawbar_pull_over_load, 1e-4);
+  EXPECT_GT(model.steady(0, {.slip = 0.3, .in_rut = true}).drawbar_pull_over_load,
+            model.steady(0, {.slip = 0.3}).drawbar_pull_over_load);
 }
 
 TEST(GroundModel, CategoryProbabilityIsTheNormalTailProbability) {
@@ -375,17 +379,17 @@ TEST(GroundModel, SteadyWheelMatchesTheForwardModel) {
   const terramech::Rover rover = testRover();
   for (const double slip : {0.1, 0.3, 0.5}) {
     const SteadyWheel steady = model->steady(0, {.slip = slip});
-    const double load_N = terramech::wheelLoad_N(rover) / std::hypot(1.0, steady.gradient);
+    const double load_N = terramech::wheelLoad_N(rover) / std::hypot(1.0, steady.drawbar_pull_over_load);
     const auto wheel = terramech::equilibrium(testSand(), rover.wheel, {.load_N = load_N, .slip = slip});
     // Closed form: the wheel under its load on that slope. Tolerance: the table of the curve, 1e-3 in slip.
-    EXPECT_NEAR(steady.gradient, wheel.drawbar_pull_N / load_N, 5e-3) << slip;
+    EXPECT_NEAR(steady.drawbar_pull_over_load, wheel.drawbar_pull_N / load_N, 5e-3) << slip;
     EXPECT_NEAR(steady.sinkage_over_radius, wheel.sinkage_m / rover.wheel.radius_m, 2e-3) << slip;
     EXPECT_NEAR(steady.torque_over_load_radius, wheel.torque_Nm / (load_N * rover.wheel.radius_m), 5e-3)
         << slip;
     EXPECT_LT(model->steady(0, {.slip = slip, .in_rut = true}).sinkage_over_radius,
               0.6 * steady.sinkage_over_radius);
   }
-  EXPECT_DOUBLE_EQ(model->reference(0, false).gradient, model->prior(0).pull.value);
+  EXPECT_DOUBLE_EQ(model->reference(0, false).drawbar_pull_over_load, model->prior(0).pull.value);
 }
 
 TEST(GroundModel, CategoryThresholdsAreTangentsOfSlopePlusMinusMargin) {

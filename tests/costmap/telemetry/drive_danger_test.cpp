@@ -422,8 +422,8 @@ double slipOfClass(const GroundModel& model, double gradient) {
   double low = -0.5, high = 0.9;
   while (high - low > 1e-4) {
     const double slip = 0.5 * (low + high);
-    const double pull =
-        0.5 * (model.steady(0, {slip, false}).gradient + model.steady(0, {slip, true}).gradient);
+    const double pull = 0.5 * (model.steady(0, {slip, false}).drawbar_pull_over_load +
+                               model.steady(0, {slip, true}).drawbar_pull_over_load);
     (pull < gradient ? low : high) = slip;
   }
   return low;
@@ -444,8 +444,8 @@ int allowed(const TraversabilityMap& map) {
 int freedWrongly(const TraversabilityMap& both, const TraversabilityMap& sound) {
   constexpr double kModel = 0.02;  // error of the model of a wheel
   const auto truth = groundOf(weakSand(), 4);
-  const double most = 0.5 * (truth->steady(0, {.slip = 0.8}).gradient +
-                             truth->steady(0, {.slip = 0.8, .in_rut = true}).gradient);
+  const double most = 0.5 * (truth->steady(0, {.slip = 0.8}).drawbar_pull_over_load +
+                             truth->steady(0, {.slip = 0.8, .in_rut = true}).drawbar_pull_over_load);
   int cells = 0;
   for (int row = 0; row < kRoverSide; ++row)
     for (int column = 0; column < kRoverSide; ++column)

@@ -190,8 +190,8 @@ double slipOn(const GroundModel& truth, double gradient) {
   double low = -0.5, high = 0.9;
   while (high - low > 1e-4) {
     const double slip = 0.5 * (low + high);
-    const double pull = 0.5 * (truth.steady(0, {.slip = slip}).gradient +
-                               truth.steady(0, {.slip = slip, .in_rut = true}).gradient);
+    const double pull = 0.5 * (truth.steady(0, {.slip = slip}).drawbar_pull_over_load +
+                               truth.steady(0, {.slip = slip, .in_rut = true}).drawbar_pull_over_load);
     (pull < gradient ? low : high) = slip;
   }
   return low;
@@ -238,7 +238,8 @@ DriveEstimate driven(const GroundModel& of_class, const GroundModel& truth, cons
 }
 
 double departureOf(const GroundModel& truth, const GroundModel& of_class) {
-  return truth.reference(0, false).gradient - of_class.reference(0, false).gradient;
+  return truth.reference(0, false).drawbar_pull_over_load -
+         of_class.reference(0, false).drawbar_pull_over_load;
 }
 
 struct Fault {

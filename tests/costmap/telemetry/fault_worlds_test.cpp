@@ -30,7 +30,7 @@ class Pull {
       const double slip = kLeast + kStep * i;
       const SteadyWheel fresh = soil.steady(0, {.slip = slip}),
                         rut = soil.steady(0, {.slip = slip, .in_rut = true});
-      pull_.push_back(0.5 * (fresh.gradient + rut.gradient));
+      pull_.push_back(0.5 * (fresh.drawbar_pull_over_load + rut.drawbar_pull_over_load));
       share_.push_back(
           std::max(0.5 * (fresh.torque_over_load_radius + rut.torque_over_load_radius) / thrust, 0.0));
     }

@@ -263,12 +263,12 @@ TEST(DangerWatch, SlipFrom70PercentBoundsThePull) {
     for (const int pass : {1, 3}) {
       TelemetryReading reading = level(slip, kNone);
       reading.pass = pass;
-      const double at = model->steady(0, {.slip = slip, .in_rut = pass > 1}).gradient;
+      const double at = model->steady(0, {.slip = slip, .in_rut = pass > 1}).drawbar_pull_over_load;
       EXPECT_NEAR(watch.bound(0, reading, 0.1).most_pull, model->prior(0).pull.value + 0.1 - at + 0.05,
                   1e-12);
     }
-  EXPECT_NE(model->steady(0, {.slip = 0.72, .in_rut = true}).gradient,
-            model->steady(0, {.slip = 0.72, .in_rut = false}).gradient);
+  EXPECT_NE(model->steady(0, {.slip = 0.72, .in_rut = true}).drawbar_pull_over_load,
+            model->steady(0, {.slip = 0.72, .in_rut = false}).drawbar_pull_over_load);
 }
 
 // Closed form: two standard deviations of reading and class combined.

@@ -272,7 +272,7 @@ TEST(TrueWorld, CrossSlopeStateMatchesTheEquilibrium) {
   terramech::Rover crab = testRover();
   crab.steering = terramech::Steering::AllWheel;
   const TrueWorld world({.classes = {testSand()}, .patches = {}}, crab, oneClass());
-  const terramech::SlopeEquilibrium plane(testSand(), crab, {.ruts = false});
+  const auto plane = terramech::SlopeEquilibrium(testSand(), crab).withoutRuts();
   int held = 0;
   for (double along = -0.2; along < 0.21; along += 0.1)
     for (double across = -0.5; across < 0.51; across += 0.1) {
