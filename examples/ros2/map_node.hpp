@@ -10,8 +10,10 @@
 #include <geometry_msgs/msg/pose_stamped.hpp>
 #include <rclcpp/rclcpp.hpp>
 #if __has_include(<tf2_ros/transform_listener.hpp>)
+#include <tf2_ros/buffer.hpp>
 #include <tf2_ros/transform_listener.hpp>
 #else
+#include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 #endif
 
