@@ -4,10 +4,8 @@
 
 #include <memory>
 #include <mutex>
-#include <string>
 #include <thread>
 
-#include <geometry_msgs/msg/pose_stamped.hpp>
 #include <rclcpp/rclcpp.hpp>
 #if __has_include(<tf2_ros/transform_listener.hpp>)
 #include <tf2_ros/buffer.hpp>
