@@ -5,18 +5,17 @@
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include <nav2_costmap_2d/cost_values.hpp>
 #include <nav2_costmap_2d/costmap_2d.hpp>
 #include <nav2_costmap_2d/layered_costmap.hpp>
+#include <pluginlib/class_list_macros.hpp>
 
 namespace talus_ros2 {
 
 using nav2_costmap_2d::LETHAL_OBSTACLE;
 using nav2_costmap_2d::MAX_NON_OBSTACLE;
 using nav2_costmap_2d::NO_INFORMATION;
-using talus::costmap::CellCode;
 using talus::maps::CellBox;
 
 namespace {
@@ -38,8 +37,6 @@ std::optional<CellBox> touched(const talus::maps::Grid& grid, talus::maps::Point
 
 }  // namespace
 
-Nav2Layer::~Nav2Layer() = default;
-
 void Nav2Layer::onInitialize() {
   const auto node = node_.lock();
   if (!node) throw std::runtime_error(name_ + ": its node is gone");
@@ -47,8 +44,11 @@ void Nav2Layer::onInitialize() {
   refuse_unknown_ = parameter(*node, name_ + ".refuse_unknown", true);
   full_cost_ratio_ = parameter(*node, name_ + ".full_cost_ratio", 20.0);
   if (!(full_cost_ratio_ > 1.0)) throw std::invalid_argument(name_ + ".full_cost_ratio must be > 1");
-  map_ = patchedMap(*node, name_, layered_costmap_->getGlobalFrameID());
-  subscription_ = patchedByTopic(node, name_, *map_, callback_group_);
+  map_ = MapNode::shared();
+  const std::string frame = layered_costmap_->getGlobalFrameID();
+  if (frame != map_->frame())
+    throw std::invalid_argument(name_ + ": the costmap's frame is '" + frame + "', talus_map's is '" +
+                                map_->frame() + "'; set both to one");
   current_ = true;
 }
 
@@ -61,34 +61,15 @@ void Nav2Layer::reset() {
   current_ = true;
 }
 
-// Unchanged tiles are shared between versions.
-std::vector<CellBox> Nav2Layer::changedSince(const Version& before) const {
-  constexpr int kSide = talus::costmap::CostTile::kSide;
-  const talus::maps::Grid& grid = now_->grid();
-  if (!before || before->content().cost != now_->content().cost)
-    return {CellBox{{0, 0}, {grid.width - 1, grid.height - 1}}};
-  std::vector<CellBox> changed;
-  for (std::size_t i = 0; i < now_->content().tiles.size(); ++i) {
-    if (now_->content().tiles[i] == before->content().tiles[i]) continue;
-    const int column = static_cast<int>(i) % now_->tileColumns() * kSide,
-              row = static_cast<int>(i) / now_->tileColumns() * kSide;
-    changed.push_back({{column, row}, {column + kSide - 1, row + kSide - 1}});
-  }
-  return changed;
-}
-
 void Nav2Layer::updateBounds(double, double, double, double* min_x, double* min_y, double* max_x,
                              double* max_y) {
   if (!enabled_) return;
-  const Version before = std::exchange(now_, map_->published());
-  if (!before || before->content().cost != now_->content().cost) {
-    judge_ = std::make_unique<talus::planner::CellJudge>(now_->content().cost);
-    cells_.assign(now_->grid().size(), {CellCode(), refuse_unknown_ ? LETHAL_OBSTACLE : NO_INFORMATION});
-  }
+  std::vector<CellBox> changed = cells_.show(map_->published());
+  const talus::maps::Grid& grid = cells_.version()->grid();
   // A rolling window also brings new cells into view.
-  const bool all = redraw_.exchange(false) || layered_costmap_->isRolling();
-  const talus::maps::Grid& grid = now_->grid();
-  for (const CellBox& box : changedSince(all ? nullptr : before)) {
+  if (redraw_.exchange(false) || layered_costmap_->isRolling())
+    changed = {CellBox{{0, 0}, {grid.width - 1, grid.height - 1}}};
+  for (const CellBox& box : changed) {
     *min_x = std::min(*min_x, grid.south_west.x_m + box.first.column * grid.resolution_m);
     *min_y = std::min(*min_y, grid.south_west.y_m + box.first.row * grid.resolution_m);
     *max_x = std::max(*max_x, grid.south_west.x_m + (box.last.column + 1) * grid.resolution_m);
@@ -96,19 +77,14 @@ void Nav2Layer::updateBounds(double, double, double, double* min_x, double* min_
   }
 }
 
-std::uint8_t Nav2Layer::judged(talus::maps::Cell cell) {
+std::uint8_t Nav2Layer::costOf(talus::maps::Cell cell) {
   using Kind = talus::planner::CellJudgement::Kind;
-  Judged& known = cells_[now_->grid().index(cell)];
-  const CellCode code = now_->at(cell);
-  if (known.code == code) return known.cost;
-  const talus::planner::CellJudgement judgement = judge_->of(code);
-  known.code = code;
-  if (judgement.kind == Kind::Refused) return known.cost = LETHAL_OBSTACLE;
-  if (judgement.kind == Kind::Restricted) return known.cost = MAX_NON_OBSTACLE;
-  if (judgement.kind == Kind::Unknown) return known.cost = refuse_unknown_ ? LETHAL_OBSTACLE : NO_INFORMATION;
-  const double dearer = static_cast<double>(judgement.highest_J_per_m / judge_->level_J_per_m() - 1.0F);
-  const double share = std::clamp(dearer / (full_cost_ratio_ - 1.0), 0.0, 1.0);
-  return known.cost = static_cast<std::uint8_t>(std::lround(share * (MAX_NON_OBSTACLE - 1)));
+  const talus::planner::CellJudgement judgement = cells_.at(cell);
+  if (judgement.kind == Kind::Refused) return LETHAL_OBSTACLE;
+  if (judgement.kind == Kind::Restricted) return MAX_NON_OBSTACLE;
+  if (judgement.kind == Kind::Unknown) return refuse_unknown_ ? LETHAL_OBSTACLE : NO_INFORMATION;
+  const double share = (cells_.costRatio(judgement) - 1.0) / (full_cost_ratio_ - 1.0);
+  return static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0, 1.0) * (MAX_NON_OBSTACLE - 1)));
 }
 
 std::uint8_t Nav2Layer::worstIn(const CellBox& box) {
@@ -116,7 +92,7 @@ std::uint8_t Nav2Layer::worstIn(const CellBox& box) {
   bool known = false;
   for (int row = box.first.row; row <= box.last.row; ++row)
     for (int column = box.first.column; column <= box.last.column; ++column) {
-      const std::uint8_t cost = judged({column, row});
+      const std::uint8_t cost = costOf({column, row});
       if (cost == NO_INFORMATION) continue;
       known = true;
       worst = std::max(worst, cost);
@@ -125,14 +101,14 @@ std::uint8_t Nav2Layer::worstIn(const CellBox& box) {
 }
 
 void Nav2Layer::updateCosts(nav2_costmap_2d::Costmap2D& master, int min_i, int min_j, int max_i, int max_j) {
-  if (!enabled_ || !now_) return;
+  if (!enabled_ || !cells_.version()) return;
   unsigned char* costs = master.getCharMap();
   for (int j = min_j; j < max_j; ++j)
     for (int i = min_i; i < max_i; ++i) {
       talus::maps::Point middle;
       const auto column = static_cast<unsigned int>(i), row = static_cast<unsigned int>(j);
       master.mapToWorld(column, row, middle.x_m, middle.y_m);
-      const auto box = touched(now_->grid(), middle, master.getResolution());
+      const auto box = touched(cells_.version()->grid(), middle, master.getResolution());
       if (!box) continue;
       const std::uint8_t cost = worstIn(*box);
       unsigned char& standing = costs[master.getIndex(column, row)];
@@ -142,3 +118,5 @@ void Nav2Layer::updateCosts(nav2_costmap_2d::Costmap2D& master, int min_i, int m
 }
 
 }  // namespace talus_ros2
+
+PLUGINLIB_EXPORT_CLASS(talus_ros2::Nav2Layer, nav2_costmap_2d::Layer)

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include <nav2_core/planner_exceptions.hpp>
-
-#include "route_messages.hpp"
+#include <pluginlib/class_list_macros.hpp>
 
 namespace talus_ros2 {
 namespace {
@@ -22,34 +21,18 @@ double headingOf(const PoseStamped& pose) {
   return std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z));
 }
 
-// Polls the caller's cancel function: once at construction, then every 20 ms until destruction.
-class CancelWatch {
- public:
-  CancelWatch(const std::function<bool()>& wanted, std::stop_source stop) : stop_(std::move(stop)) {
-    if (!wanted || ends(wanted)) return;
-    watching_ = std::jthread([this, wanted](const std::stop_token& over) {
-      std::mutex mutex;
-      std::unique_lock lock(mutex);
-      std::condition_variable_any bell;
-      do bell.wait_for(lock, over, std::chrono::milliseconds(20), [] { return false; });
-      while (!over.stop_requested() && !ends(wanted));
-    });
-  }
-
- private:
-  bool ends(const std::function<bool()>& wanted) {
-    bool end = true;
-    try {
-      end = wanted();
-    } catch (const std::exception&) {  // `end` stays true: the planning is cancelled
-    }
-    if (end) stop_.request_stop();
-    return end;
-  }
-
-  std::stop_source stop_;
-  std::jthread watching_;
-};
+// Returns a thread that asks the caller's cancel function every 20 ms until its destruction.
+std::jthread cancelling(const std::function<bool()>& wanted, std::stop_source stop) {
+  if (!wanted) return {};
+  return std::jthread([wanted, stop](const std::stop_token& over) mutable {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any bell;
+    do bell.wait_for(lock, over, std::chrono::milliseconds(20), [] { return false; });
+    while (!over.stop_requested() && !wanted());
+    if (!over.stop_requested()) stop.request_stop();
+  });
+}
 
 // Throws the exception of nav2_core for a failed plan. The text is Talus' reason: place, cause and remedy.
 [[noreturn]] void refuse(const talus::planner::Route& route, bool start_inside, bool goal_inside) {
@@ -72,11 +55,10 @@ class CancelWatch {
 }  // namespace
 
 void Nav2Planner::configure(const Parent& parent, std::string name, std::shared_ptr<tf2_ros::Buffer>,
-                            std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) {
+                            std::shared_ptr<nav2_costmap_2d::Costmap2DROS>) {
   parent_ = parent;
   const auto node = parent.lock();
   if (!node) throw nav2_core::PlannerException(name + ": its node is gone");
-  frame_ = costmap->getGlobalFrameID();
   const auto planner = parameter<std::string>(*node, name + ".planner", "field");
   const auto limit_s = parameter(*node, name + ".time_limit_s", 5.0);
   tolerance_m_ = parameter(*node, name + ".tolerance_m", 0.5);
@@ -84,14 +66,11 @@ void Nav2Planner::configure(const Parent& parent, std::string name, std::shared_
   headings_ = parameter(*node, name + ".use_headings", false);
   if (!(spacing_m_ > 0.0)) throw nav2_core::PlannerException(name + ".path_spacing_m must be > 0");
   try {
-    map_ = patchedMap(*node, name, frame_);
+    map_ = MapNode::shared();
     planner_.emplace(talus::PlannerSettings{.planner = planner, .time_limit_s = limit_s});
   } catch (const std::exception& error) {
     throw nav2_core::PlannerException(error.what());
   }
-  categories_ = rclcpp::create_publisher<visualization_msgs::msg::Marker>(*node, name + "/categories",
-                                                                          rclcpp::QoS(1).transient_local());
-  subscription_ = patchedByTopic(node, name, *map_);
 }
 
 void Nav2Planner::activate() {
@@ -108,8 +87,6 @@ void Nav2Planner::deactivate() {
 void Nav2Planner::cleanup() {
   deactivate();
   const std::lock_guard lock(planning_);
-  subscription_.reset();
-  categories_.reset();
   planner_.reset();
   map_.reset();
 }
@@ -121,21 +98,26 @@ std::stop_source Nav2Planner::begin() {
   return stop_ = std::stop_source();
 }
 
-talus::maps::Point Nav2Planner::placeOf(const PoseStamped& pose, const char* which) const {
-  if (pose.header.frame_id != frame_)
-    throw nav2_core::PlannerTFError(std::string(which) + ": frame '" + pose.header.frame_id + "', must be '" +
-                                    frame_ + "'; transform it first");
-  return {pose.pose.position.x, pose.pose.position.y};
+PoseStamped Nav2Planner::inMap(const PoseStamped& pose, const char* which) const {
+  try {
+    return map_->inMap(pose);
+  } catch (const std::exception& error) {
+    throw nav2_core::PlannerTFError(std::string(which) + ": frame '" + pose.header.frame_id + "', map '" +
+                                    map_->frame() + "': " + error.what());
+  }
 }
 
 talus::PlanRequest Nav2Planner::requestOf(const PoseStamped& start, const PoseStamped& goal,
                                           const Poses& viapoints) const {
-  talus::PlanRequest request{
-      .start = placeOf(start, "start"), .goal = placeOf(goal, "goal"), .tolerance_m = tolerance_m_};
-  for (const PoseStamped& pose : viapoints) request.via.push_back(placeOf(pose, "via point"));
+  const auto placeOf = [](const PoseStamped& pose) {
+    return talus::maps::Point{pose.pose.position.x, pose.pose.position.y};
+  };
+  const PoseStamped from = inMap(start, "start"), to = inMap(goal, "goal");
+  talus::PlanRequest request{.start = placeOf(from), .goal = placeOf(to), .tolerance_m = tolerance_m_};
+  for (const PoseStamped& pose : viapoints) request.via.push_back(placeOf(inMap(pose, "via point")));
   if (headings_) {
-    request.start_heading_rad = headingOf(start);
-    request.goal_heading_rad = headingOf(goal);
+    request.start_heading_rad = headingOf(from);
+    request.goal_heading_rad = headingOf(to);
   }
   return request;
 }
@@ -148,13 +130,14 @@ nav_msgs::msg::Path Nav2Planner::createPlan(const PoseStamped& start, const Pose
 nav_msgs::msg::Path Nav2Planner::createPlan(const PoseStamped& start, const PoseStamped& goal,
                                             const Poses& viapoints, std::function<bool()> cancel_checker) {
   const std::lock_guard lock(planning_);
-  const std::stop_source stop = begin();
+  std::stop_source stop = begin();
   talus::PlanRequest request = requestOf(start, goal, viapoints);
-  const CancelWatch cancel(cancel_checker, stop);
   request.watch.stop = stop.get_token();
   talus::planner::Route route;
   const auto published = map_->published();
+  if (cancel_checker && cancel_checker()) stop.request_stop();
   try {
+    const std::jthread watch = cancelling(cancel_checker, stop);
     route = planner_->plan(published, request);
   } catch (const std::exception& error) {
     throw nav2_core::PlannerException(error.what());
@@ -163,15 +146,12 @@ nav_msgs::msg::Path Nav2Planner::createPlan(const PoseStamped& start, const Pose
   if (route.status != RouteStatus::Found)
     refuse(route, published->grid().cellAt(request.start).has_value(),
            published->grid().cellAt(request.goal).has_value());
-  return answer(route);
-}
-
-nav_msgs::msg::Path Nav2Planner::answer(const talus::planner::Route& route) const {
   std_msgs::msg::Header header;
-  header.frame_id = frame_;
+  header.frame_id = map_->frame();
   if (const auto node = parent_.lock()) header.stamp = node->now();
-  categories_->publish(categoriesOf(route, header, spacing_m_));
   return pathOf(route, header, spacing_m_);
 }
 
 }  // namespace talus_ros2
+
+PLUGINLIB_EXPORT_CLASS(talus_ros2::Nav2Planner, nav2_core::GlobalPlanner)

@@ -1,5 +1,5 @@
 // Shows   Talus as a global planner of Nav2.
-// Needs   talus::planner, nav2_core (Jazzy or later), grid_map_core, grid_map_msgs.  Parameters: README.md.
+// Needs   map_node.hpp, nav2_core (Jazzy or later).  Parameters: README.md.
 #pragma once
 
 #include <functional>
@@ -13,9 +13,8 @@
 #include <geometry_msgs/msg/pose_stamped.hpp>
 #include <nav2_core/global_planner.hpp>
 #include <nav_msgs/msg/path.hpp>
-#include <visualization_msgs/msg/marker.hpp>
 
-#include "patched_map.hpp"
+#include "map_node.hpp"
 
 namespace talus_ros2 {
 
@@ -28,9 +27,8 @@ struct FirstParameter<void (Class::*)(const First&, Others...)> {
   using type = First;
 };
 
-/// Global planner of Nav2 on a Talus map from a file. Elevation messages of grid_map may change parts of the
-/// map at run time. createPlan(), the subscription and deactivate() may run in three threads; a second
-/// createPlan() waits for the first. Failures are thrown as the exception types of nav2_core, each with a
+/// Global planner of Nav2: a view of the map of MapNode. createPlan() and deactivate() may run in two threads; a
+/// second createPlan() waits for the first. Failures are thrown as the exception types of nav2_core, each with a
 /// text of one line.
 class Nav2Planner : public nav2_core::GlobalPlanner {
  public:
@@ -55,19 +53,15 @@ class Nav2Planner : public nav2_core::GlobalPlanner {
 
  private:
   std::stop_source begin();
+  geometry_msgs::msg::PoseStamped inMap(const geometry_msgs::msg::PoseStamped& pose, const char* which) const;
   talus::PlanRequest requestOf(const geometry_msgs::msg::PoseStamped& start,
                                const geometry_msgs::msg::PoseStamped& goal, const Poses& viapoints) const;
-  talus::maps::Point placeOf(const geometry_msgs::msg::PoseStamped& pose, const char* which) const;
-  nav_msgs::msg::Path answer(const talus::planner::Route& route) const;
 
   Parent parent_;
-  std::string frame_;
   double tolerance_m_ = 0.5;
   double spacing_m_ = 0.5;
   bool headings_ = false;
-  std::unique_ptr<PatchedMap> map_;
-  std::shared_ptr<void> subscription_;  // uses map_
-  std::shared_ptr<rclcpp::Publisher<visualization_msgs::msg::Marker>> categories_;
+  std::shared_ptr<MapNode> map_;
   std::mutex planning_;  // serialises plans
   std::optional<talus::Planner> planner_;
   std::mutex stopping_;  // guards the members below

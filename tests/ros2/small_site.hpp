@@ -1,9 +1,19 @@
 #pragma once
 
+#include <any>
+#include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
 
+#include <rclcpp/rclcpp.hpp>
+#include <unistd.h>
+
 #include <talus/planner/planner.hpp>
+
+#include "example_messages.hpp"
+#include "map_node.hpp"
 
 namespace talus_ros2 {
 
@@ -36,5 +46,30 @@ inline talus::costmap::TraversabilityMap smallSite(bool closed = false) {
               talus::costmap::GroundModel::Parts{.rover = rover, .classes = {{.soil = soil}}, .policy = {}}),
           {}};
 }
+
+/// What the tests of the map and of its views have: a map of the small site in a file, and topics.
+class RosTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    tf2_ros::Buffer::known.clear();
+    rclcpp::Node::overrides = {{"elevation_topic", std::string("elevation_map")},
+                               {"wheel_topic", std::string("wheels")},
+                               {"map_file", file_}};
+    talus::costmap::writeMap(smallSite(), file_);
+  }
+  void TearDown() override { std::filesystem::remove(file_); }
+
+  template <typename Message>
+  static void hear(const Message& message, const std::string& topic = "elevation_map") {
+    const auto known = rclcpp::Node::newest->subscribers.at(topic).lock();
+    std::dynamic_pointer_cast<rclcpp::Subscription<Message>>(known)->hear(message);
+  }
+  static std::vector<std::string>& log() { return rclcpp::Node::newest->log; }
+
+  const std::string file_ = (std::filesystem::temp_directory_path() /
+                             ("talus-ros-" + std::to_string(::getpid()) +
+                              testing::UnitTest::GetInstance()->current_test_info()->name()))
+                                .string();
+};
 
 }  // namespace talus_ros2

@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import sysconfig
-import tarfile
 import tempfile
 import zipfile
 
@@ -15,17 +14,19 @@ METADATA = f"Metadata-Version: 2.1\nName: talus\nVersion: {VERSION}\nRequires-Py
 
 
 def _installed(prefix):
-    build = os.path.join("build", "wheel")
-    options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DTALUS_UNITY=ON", "-DTALUS_TESTS=OFF", "-DTALUS_PYTHON_DIR=.",
-               f"-DPython_EXECUTABLE={sys.executable}", "-DCMAKE_REQUIRE_FIND_PACKAGE_pybind11=ON"]
-    subprocess.run(["cmake", "-S", ".", "-B", build, *options], check=True)
-    subprocess.run(["cmake", "--build", build, "--target", "talus_python"], check=True)
+    build = os.environ.get("TALUS_BUILD", "")  # a build of `./dev`, which is then taken as it is
+    if not build:
+        build = os.path.join("build", "wheel")
+        options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DTALUS_UNITY=ON", "-DTALUS_TESTS=OFF",
+                   f"-DPython_EXECUTABLE={sys.executable}", "-DCMAKE_REQUIRE_FIND_PACKAGE_pybind11=ON"]
+        subprocess.run(["cmake", "-S", ".", "-B", build, *options], check=True)
+        subprocess.run(["cmake", "--build", build, "--target", "talus_python"], check=True)
     subprocess.run(["cmake", "--install", build, "--component", "python3-talus", "--prefix", prefix, "--strip"], check=True)
-    for folder, _, names in os.walk(os.path.join(prefix, "talus")):
-        for name in names:
+    for folder, _, names in os.walk(prefix):
+        for name in names if os.path.basename(folder) == "talus" and "__init__.py" in names else ():
             path = os.path.join(folder, name)
             with open(path, "rb") as file:
-                yield os.path.relpath(path, prefix), file.read()
+                yield os.path.join("talus", name), file.read()
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
@@ -49,12 +50,11 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    name = f"talus-{VERSION}"
-    with tarfile.open(os.path.join(sdist_directory, name + ".tar.gz"), "w:gz") as archive:
-        for file in subprocess.run(["git", "ls-files"], check=True, capture_output=True, text=True).stdout.split():
-            archive.add(file, f"{name}/{file}")
-        with tempfile.NamedTemporaryFile("w") as info:
-            info.write(METADATA)
-            info.flush()
-            archive.add(info.name, f"{name}/PKG-INFO")
-    return name + ".tar.gz"
+    archive = f"talus-{VERSION}.tar.gz"
+    with tempfile.TemporaryDirectory() as folder:
+        info = os.path.join(folder, "PKG-INFO")
+        with open(info, "w", encoding="utf-8") as file:
+            file.write(METADATA)
+        subprocess.run(["git", "archive", f"--prefix=talus-{VERSION}/", f"--add-file={info}", "-o",
+                        os.path.join(sdist_directory, archive), "HEAD"], check=True)
+    return archive

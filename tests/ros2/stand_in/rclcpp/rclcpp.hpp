@@ -1,12 +1,15 @@
 // A stand-in of our own for tests: the names that examples/ros2 uses, declared as declarations_test.cpp lists them.
 #pragma once
 
+#include <any>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -22,7 +25,10 @@ struct Logger {
 
 class Duration {
  public:
-  explicit Duration(std::int64_t nanoseconds) : nanoseconds_(nanoseconds) {}
+  explicit Duration(std::chrono::nanoseconds duration) : nanoseconds_(duration.count()) {}
+  static Duration from_nanoseconds(std::int64_t nanoseconds) {
+    return Duration(std::chrono::nanoseconds(nanoseconds));
+  }
   double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
 
  private:
@@ -39,7 +45,9 @@ class Time {
     return {static_cast<std::int32_t>(nanoseconds_ / 1000000000),
             static_cast<std::uint32_t>(nanoseconds_ % 1000000000)};
   }
-  Duration operator-(const Time& rhs) const { return Duration(nanoseconds_ - rhs.nanoseconds_); }
+  Duration operator-(const Time& rhs) const {
+    return Duration::from_nanoseconds(nanoseconds_ - rhs.nanoseconds_);
+  }
   rcl_clock_type_t get_clock_type() const { return type_; }
 
  private:
@@ -88,25 +96,89 @@ class Publisher {
   std::vector<Message> sent;
 };
 
-template <typename Message, typename Callback, typename Node>
-std::shared_ptr<Subscription<Message>> create_subscription(Node& node, const std::string& topic_name,
-                                                           const QoS&, Callback&& callback,
-                                                           const SubscriptionOptions& = {}) {
-  auto made = std::make_shared<Subscription<Message>>(std::forward<Callback>(callback));
-  node.subscribers[topic_name] = made;
-  return made;
+class NodeOptions {
+ public:
+  NodeOptions& arguments(const std::vector<std::string>& arguments) {
+    given = arguments;
+    return *this;
+  }
+  std::vector<std::string> given;
+};
+
+class TimerBase {
+ public:
+  std::function<void()> ring;
+};
+
+// What each class of nodes has.
+class AnyNode {
+ public:
+  bool has_parameter(const std::string& name) const { return parameters.count(name) > 0; }
+  template <typename T>
+  auto declare_parameter(const std::string& name, const T& value) {
+    parameters[name] = value;
+    return value;
+  }
+  template <typename T>
+  bool get_parameter(const std::string& name, T& value) const {
+    value = std::any_cast<T>(parameters.at(name));
+    return true;
+  }
+  Logger get_logger() const { return {&log}; }
+  Clock::SharedPtr get_clock() { return std::make_shared<Clock>(); }
+  Time now() const { return Time(clock_s * 1000000000, RCL_ROS_TIME); }
+
+  // What tests set and read.
+  std::map<std::string, std::any> parameters;
+  mutable std::vector<std::string> log;
+  inline static std::int64_t clock_s = 7;
+};
+
+class Node : public AnyNode {
+ public:
+  Node(const std::string& name, const NodeOptions&) {
+    parameters = overrides;
+    newest = this;
+    static_cast<void>(name);
+  }
+  template <typename Message, typename Callback>
+  std::shared_ptr<Subscription<Message>> create_subscription(const std::string& topic_name, const QoS&,
+                                                             Callback&& callback) {
+    auto made = std::make_shared<Subscription<Message>>(std::forward<Callback>(callback));
+    subscribers[topic_name] = made;
+    return made;
+  }
+  template <typename Message>
+  std::shared_ptr<Publisher<Message>> create_publisher(const std::string& topic_name, const QoS&) {
+    auto made = std::make_shared<Publisher<Message>>();
+    publishers[topic_name] = made;
+    return made;
+  }
+  template <typename Callback>
+  std::shared_ptr<TimerBase> create_wall_timer(std::chrono::seconds, Callback callback) {
+    timer = std::make_shared<TimerBase>();
+    timer->ring = callback;
+    return timer;
+  }
+
+  std::map<std::string, std::weak_ptr<SubscriptionBase>> subscribers;
+  std::map<std::string, std::any> publishers;
+  std::shared_ptr<TimerBase> timer;
+  inline static std::map<std::string, std::any> overrides;  // parameters of the next node
+  inline static Node* newest = nullptr;
+};
+
+inline bool ok() {
+  return true;
 }
 
-template <typename Message, typename Node>
-std::shared_ptr<Publisher<Message>> create_publisher(Node&& node, const std::string& topic_name, const QoS&) {
-  auto made = std::make_shared<Publisher<Message>>();
-  node.publishers[topic_name] = made;
-  return made;
-}
-
-inline Logger get_logger(const std::string&) {
-  return {nullptr};
-}
+namespace executors {
+class SingleThreadedExecutor {
+ public:
+  void add_node(std::shared_ptr<Node>) {}
+  void spin_once(std::chrono::nanoseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
+};
+}  // namespace executors
 
 }  // namespace rclcpp
 
