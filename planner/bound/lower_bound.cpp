@@ -6,7 +6,7 @@
 
 #include <talus/common/common.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
-#include <talus/planner/bound/sub_solution_check.hpp>
+#include <talus/planner/bound/sub_solution.hpp>
 
 namespace talus::planner {
 
@@ -275,6 +275,40 @@ std::optional<Octagon> risesIn(const std::vector<float>& values, const maps::Gri
       side(rise(1, 0), rise(2, 3)), across(rise(2, 0)), side(rise(3, 0), rise(2, 1)), across(rise(3, 1))};
 }
 
+// Returns the part of a map that contains a region, with each cell divided into `divided` x `divided` equal cells and
+// the cells outside of the region closed, and the lower bounds from the start.
+SubSolution::Parts dividedPart(const costmap::CostGrid& map, const maps::CellBox& box,
+                               const std::vector<bool>& region, const std::vector<float>& from_start,
+                               int divided) {
+  const maps::Grid& grid = map.grid();
+  maps::Grid part{.width = box.width() * divided,
+                  .height = box.height() * divided,
+                  .resolution_m = grid.resolution_m / divided,
+                  .south_west = {grid.south_west.x_m + box.first.column * grid.resolution_m,
+                                 grid.south_west.y_m + box.first.row * grid.resolution_m}};
+  const auto outer = [&](int column, int row) {
+    return Cell{box.first.column + std::min(column / divided, box.width() - 1),
+                box.first.row + std::min(row / divided, box.height() - 1)};
+  };
+  maps::Raster<CellCode> cells(part, CellCode({.curve = CellCode::kBlocked}));
+  SubSolution::Parts parts{.most_J = 0.0, .cheapest_J = cheapestMetre_J(map)};
+  for (int row = 0; row < part.height; ++row)
+    for (int column = 0; column < part.width; ++column)
+      if (const Cell of = outer(column, row); region[grid.index(of)]) cells[Cell{column, row}] = map.at(of);
+  parts.map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, map.content().cost));
+  // At a new corner, the lowest bound of the cell's corners holds: a route enters the cell between two of them.
+  for (int row = 0; row <= part.height; ++row)
+    for (int column = 0; column <= part.width; ++column) {
+      const bool old = row % divided == 0 && column % divided == 0;
+      const auto of = cornersOf(grid, outer(column, row));
+      const auto at = [&](std::size_t corner) { return from_start[corner]; };
+      parts.from_start.push_back(
+          old ? at(cornerIndex(grid, {box.first.column + column / divided, box.first.row + row / divided}))
+              : std::min({at(of[0]), at(of[1]), at(of[2]), at(of[3])}));
+    }
+  return parts;
+}
+
 // Returns the lower bound [J] on a uniform map whose limit for each heading is the lowest of all cells; on a
 // uniform map the optimal function is linear. Returns 0 as soon as the bound is at most `enough_J`.
 double planeBound_J(const DirectionalCostBounds& of, const Segment& places, double tolerance_m,
@@ -451,47 +485,6 @@ double LowerBound::narrowed_J(const Segment& places, const std::vector<FieldGoal
   fits = {};
   return std::max(bound_J, certified_J(places, bound_J, known_J, enough_J, stop));
 }
-
-namespace {
-
-// Returns the part of a map that contains a region, with each cell divided into `divided` x `divided` equal cells, the
-// region there, and the lower bounds from the start.
-SubSolution::Parts dividedPart(const costmap::CostGrid& map, const maps::CellBox& box,
-                               const std::vector<bool>& region, const std::vector<float>& from_start,
-                               int divided) {
-  const maps::Grid& grid = map.grid();
-  maps::Grid part{.width = box.width() * divided,
-                  .height = box.height() * divided,
-                  .resolution_m = grid.resolution_m / divided,
-                  .south_west = {grid.south_west.x_m + box.first.column * grid.resolution_m,
-                                 grid.south_west.y_m + box.first.row * grid.resolution_m}};
-  const auto outer = [&](int column, int row) {
-    return Cell{box.first.column + std::min(column / divided, box.width() - 1),
-                box.first.row + std::min(row / divided, box.height() - 1)};
-  };
-  maps::Raster<CellCode> cells(part);
-  SubSolution::Parts parts{.most_J = 0.0, .cheapest_J = cheapestMetre_J(map)};
-  parts.region.resize(part.size());
-  for (int row = 0; row < part.height; ++row)
-    for (int column = 0; column < part.width; ++column) {
-      cells[Cell{column, row}] = map.at(outer(column, row));
-      parts.region[part.index({column, row})] = region[grid.index(outer(column, row))];
-    }
-  parts.map = std::make_shared<costmap::CostGrid>(costmap::flattened(cells, map.content().cost));
-  // At a new corner, the lowest bound of the cell's corners holds: a route enters the cell between two of them.
-  for (int row = 0; row <= part.height; ++row)
-    for (int column = 0; column <= part.width; ++column) {
-      const bool old = row % divided == 0 && column % divided == 0;
-      const auto of = cornersOf(grid, outer(column, row));
-      const auto at = [&](std::size_t corner) { return from_start[corner]; };
-      parts.from_start.push_back(
-          old ? at(cornerIndex(grid, {box.first.column + column / divided, box.first.row + row / divided}))
-              : std::min({at(of[0]), at(of[1]), at(of[2]), at(of[3])}));
-    }
-  return parts;
-}
-
-}  // namespace
 
 double LowerBound::certified_J(const Segment& places, double bound_J, double known_J, double enough_J,
                                const StopCheck& stop) {

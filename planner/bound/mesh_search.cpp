@@ -80,12 +80,6 @@ const Headings& headingColumns() noexcept {
 }
 
 constexpr std::uint32_t kClosed = 0xfffffffeU;  // slot of a cell without an allowed heading
-constexpr int kRecentBits = 14;
-
-std::size_t indexIn(const maps::Grid& grid, maps::Cell cell) noexcept {
-  return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(grid.width) +
-         static_cast<std::size_t>(cell.column);
-}
 
 }  // namespace
 
@@ -185,30 +179,21 @@ bool TriangleCosts::exceeds(const costmap::Direction& fall, float share) const n
   return *std::ranges::max_element(most) > 0.0F;
 }
 
-MeshCosts::MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits,
-                     const std::vector<bool>& region)
-    : map_(std::move(map)),
-      mesh_(map_->grid()),
-      limits_(limits),
-      region_(region),
-      slot_of_(map_->grid().size(), kNone),
-      recent_(std::size_t{1} << kRecentBits) {}
+MeshCosts::MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits)
+    : map_(std::move(map)), mesh_(map_->grid()), limits_(limits), slot_of_(map_->grid().size(), kNone) {}
 
 std::uint32_t MeshCosts::newPrices(costmap::CellCode code) {
-  Recent& recent = recent_[code.recentSlot(kRecentBits)];
-  if (recent.code == code.number() && recent.prices != kNone) return recent.prices;
-  recent = {code.number(), kClosed};
+  const auto [known, added] = prices_of_.try_emplace(code.number(), kClosed);
   DirectionalCostBounds::Limits limits;
-  if (!limits_.of(code, limits)) return kClosed;
-  recent.prices = static_cast<std::uint32_t>(prices_.size());
+  if (!added || !limits_.of(code, limits)) return known->second;
+  known->second = static_cast<std::uint32_t>(prices_.size());
   prices_.emplace_back(limits, mesh_.grid().resolution_m);
-  return recent.prices;
+  return known->second;
 }
 
 std::uint32_t MeshCosts::slotOf(maps::Cell cell) {
-  if (!mesh_.grid().contains(cell) || (!region_.empty() && !region_[indexIn(mesh_.grid(), cell)]))
-    return kNone;
-  std::uint32_t& slot = slot_of_[indexIn(mesh_.grid(), cell)];
+  if (!mesh_.grid().contains(cell)) return kNone;
+  std::uint32_t& slot = slot_of_[mesh_.grid().index(cell)];
   if (slot == kNone) {
     const std::uint32_t prices = newPrices(map_->at(cell));
     slot = prices == kClosed ? kClosed : static_cast<std::uint32_t>(slots_.size());
@@ -218,9 +203,8 @@ std::uint32_t MeshCosts::slotOf(maps::Cell cell) {
 }
 
 std::uint32_t MeshCosts::knownSlotOf(maps::Cell cell) const noexcept {
-  if (!mesh_.grid().contains(cell) || (!region_.empty() && !region_[indexIn(mesh_.grid(), cell)]))
-    return kNone;
-  const std::uint32_t slot = slot_of_[indexIn(mesh_.grid(), cell)];
+  if (!mesh_.grid().contains(cell)) return kNone;
+  const std::uint32_t slot = slot_of_[mesh_.grid().index(cell)];
   return slot == kClosed ? kNone : slot;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -122,17 +123,15 @@ struct TriangleCosts {
 /// thread-safe.
 class MeshCosts {
  public:
-  /// `limits` are those of the map's cost function. Cells outside `region`, by index of the cell, are closed; empty:
-  /// none. Both must outlive the object.
-  MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits,
-            const std::vector<bool>& region);
+  /// `limits` are those of the map's cost function and must outlive the object.
+  MeshCosts(std::shared_ptr<const costmap::CostGrid> map, DirectionalCostBounds& limits);
 
   /// Slot number of a cell without a slot.
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
   const CellMesh& mesh() const noexcept { return mesh_; }
-  /// Returns the slot of a cell, which is created if necessary; kNone outside the map and the region
-  /// and for cells that allow no heading.
+  /// Returns the slot of a cell, which is created if necessary; kNone outside the map and for cells that allow
+  /// no heading.
   std::uint32_t slotOf(maps::Cell cell);
   /// Returns the slot of a cell if slotOf() was called for the cell before; otherwise kNone.
   std::uint32_t knownSlotOf(maps::Cell cell) const noexcept;
@@ -148,22 +147,15 @@ class MeshCosts {
     std::uint32_t prices;
     maps::Cell cell;
   };
-  // Most recent cell code with a given hash value, and its costs. Neighbouring cells often have equal codes.
-  struct Recent {
-    std::uint64_t code = 0;
-    std::uint32_t prices = kNone;
-  };
-
   std::uint32_t newPrices(costmap::CellCode code);
 
   std::shared_ptr<const costmap::CostGrid> map_;
   CellMesh mesh_;
   DirectionalCostBounds& limits_;
-  const std::vector<bool>& region_;
   std::vector<std::uint32_t> slot_of_;  // slot by cell index
   std::vector<Slot> slots_;
   std::vector<TriangleCosts> prices_;
-  std::vector<Recent> recent_;  // by hash value of the cell code
+  std::unordered_map<std::uint64_t, std::uint32_t> prices_of_;  // position in prices_ by cell code
 };
 
 /// Search for the highest function over the nodes of a CellMesh that is linear on each triangle and satisfies

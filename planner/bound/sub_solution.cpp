@@ -22,7 +22,7 @@ SubSolution::SubSolution(const Parts& parts, DirectionalCostBounds& limits, std:
     : parts_(parts),
       stop_(stop),
       quota_(quota),
-      prices_(parts.map, limits, parts.region),
+      prices_(parts.map, limits),
       from_start_(prices_, {.way = MeshSearch::Way::ToNode, .cheapest_J = parts.cheapest_J}),
       to_goal_(
           prices_,

@@ -38,8 +38,6 @@ class SubSolution {
     double cheapest_J;              ///< lower bound of the cost per metre on the whole map [J/m], > 0
     /// Lower bounds of the costs from the start to the corners of the mesh [J], linear along cell sides (cornerField()).
     std::vector<float> from_start;
-    /// Cells that no route of at most most_J leaves, by index of the cell; empty: all cells.
-    std::vector<bool> region;
   };
 
   /// Takes nodes and checks cells at most `quota` times in all. `limits` are those of the map's cost function; both must outlive the object.
@@ -77,5 +75,22 @@ class SubSolution {
   MeshCosts prices_;
   MeshSearch from_start_, to_goal_;
 };
+
+/// Lower bound proven by a sub-solution.
+struct Proof {
+  double bound_J = 0.0;  ///< lower bound of the cost of every route from the start to the goal [J]
+  double excess = 1.0;   ///< smallest factor >= 1 such that the solution divided by it satisfies every limit
+};
+
+/// Verifies a sub-solution against the limits of its cells and at its border. Returns a bound of 0 if nothing
+/// is proven.
+///
+/// Proof (ours, not from the literature). For all triangles of the solution u and all 64 headings, let w be
+/// the largest ratio of the decrease of u per metre to the limit of the cell. Then u / w satisfies all
+/// limits; therefore a route costs at least (u(p) - u(goal)) / w behind a place p after which it stays on these
+/// triangles. If it does not stay on them from the start on, p is on a side with two outer nodes (nodes that the
+/// search did not expand), and the route costs at least the lower bound from the start before p. A search that
+/// ended early thus extends the bounds from the start by the part near the goal that it reached.
+Proof provenBy(const SubSolution& solution, const SubSolution::Parts& parts);
 
 }  // namespace talus::planner

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <talus/planner/bound/sub_solution_check.hpp>
+#include <talus/planner/bound/sub_solution.hpp>
 #include <talus/planner/route/polyline.hpp>
 
 namespace talus::planner {

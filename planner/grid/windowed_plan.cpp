@@ -8,7 +8,6 @@
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/grid/windowed_plan.hpp>
 #include <talus/planner/refine/vertices.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

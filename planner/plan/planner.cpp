@@ -10,7 +10,7 @@
 #include <talus/planner/check/chassis_planner.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/check/route_ends.hpp>
-#include <talus/planner/grid/windowed_plan.hpp>
+#include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/plan/named_planner.hpp>
 #include <talus/planner/planner.hpp>
 #include <talus/planner/plugin/global_planner.hpp>

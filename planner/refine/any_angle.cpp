@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include <talus/common/parallel_for.hpp>
@@ -11,28 +12,14 @@ namespace talus::planner {
 
 namespace {
 
-struct Job {
-  const WindowCut& cut;
-  const WindowWork& work;
-  RefinementCache& memo;
-  int threads;
-  const StopCheck& stop;
+// Windows (consecutive sections) of a route, and their refinement.
+struct WindowCut {
+  double overlap_m;      // length, on both sides of a joint of two windows, that is refined again
+  double reach_m = 0.0;  // distance from the bounding box of a window up to which ground affects the result
 };
 
-void workOn(Polyline& window, const Job& job) {
-  if (job.stop()) return;
-  const Polyline key = window;
-  if (auto known = job.memo.find(key)) {
-    window = std::move(*known);
-    return;
-  }
-  window = job.work(window);
-  if (!job.stop()) job.memo.keep(key, window, job.cut.reach_m);
-}
-
-void workOnAll(std::vector<Polyline>& windows, const Job& job) {
-  parallelFor(windows.size(), job.threads, [&](std::size_t k) { workOn(windows[k], job); });
-}
+// Returns a path with the same ends as its argument, which depends only on the argument and the ground.
+using WindowWork = std::function<Polyline(const Polyline&)>;
 
 // Head and tail of a window, at most end_m long, and the stretch between them.
 struct Parts {
@@ -46,6 +33,38 @@ Parts partsOf(const Polyline& window, double end_m) {
   if (!middle) return {before, {tail.front()}, tail};
   auto [head, rest] = splitAt(before, whole_m - 2 * end_m);
   return {head, rest, tail};
+}
+
+// Applies `work` to windows, each of which begins at the end of the previous one, then to the surroundings of the joints
+// between them, and joins them; the result does not depend on the number of threads. Windows whose results are in
+// `memo` are not processed again. After a stop, windows that were not started remain unchanged.
+Polyline overWindows(std::vector<Polyline> windows, const WindowCut& cut, const WindowWork& work,
+                     RefinementCache& memo, int threads, const StopCheck& stop) {
+  const auto workOnAll = [&](std::vector<Polyline>& all) {
+    parallelFor(all.size(), threads, [&](std::size_t k) {
+      if (stop()) return;
+      const Polyline key = all[k];
+      const auto known = memo.find(key);
+      all[k] = known ? *known : work(key);
+      if (!known && !stop()) memo.keep(key, all[k], cut.reach_m);
+    });
+  };
+  workOnAll(windows);
+  if (windows.size() == 1) return windows.front();
+  std::vector<Polyline> joints{{}}, middles;
+  for (const Polyline& window : windows) {
+    Parts parts = partsOf(window, cut.overlap_m);
+    append(joints.back(), parts.head);
+    middles.push_back(std::move(parts.middle));
+    joints.push_back(std::move(parts.tail));
+  }
+  workOnAll(joints);
+  Polyline whole = joints.front();
+  for (std::size_t k = 0; k < middles.size(); ++k) {
+    append(whole, middles[k]);
+    append(whole, joints[k + 1]);
+  }
+  return whole;
 }
 
 }  // namespace
@@ -97,36 +116,6 @@ void RefinementCache::newRound() {
   ++round_;
 }
 
-Polyline byWindows(const Polyline& route, const WindowCut& cut, const WindowWork& work, RefinementCache& memo,
-                   int threads, const StopCheck& stop) {
-  return overWindows(cutFromEnd(route, cut.length_m, cut.length_m), cut, work, memo, threads, stop);
-}
-
-Polyline overWindows(std::vector<Polyline> windows, const WindowCut& cut, const WindowWork& work,
-                     RefinementCache& memo, int threads, const StopCheck& stop) {
-  workOnAll(windows, {cut, work, memo, threads, stop});
-  return joinWindows(windows, cut, work, memo, threads, stop);
-}
-
-Polyline joinWindows(const std::vector<Polyline>& windows, const WindowCut& cut, const WindowWork& work,
-                     RefinementCache& memo, int threads, const StopCheck& stop) {
-  if (windows.size() == 1) return windows.front();
-  std::vector<Polyline> joints{{}}, middles;
-  for (const Polyline& window : windows) {
-    Parts parts = partsOf(window, cut.overlap_m);
-    append(joints.back(), parts.head);
-    middles.push_back(std::move(parts.middle));
-    joints.push_back(std::move(parts.tail));
-  }
-  workOnAll(joints, {cut, work, memo, threads, stop});
-  Polyline whole = joints.front();
-  for (std::size_t k = 0; k < middles.size(); ++k) {
-    append(whole, middles[k]);
-    append(whole, joints[k + 1]);
-  }
-  return whole;
-}
-
 namespace {
 
 // [cells] Stretches between two marks are refined and cached as a whole, then the surroundings of the marks:
@@ -172,8 +161,8 @@ Polyline Refiner::refinedStretch(const MotionCost& cost, const PointSearch& sear
     stretch = std::move(tried);
   };
   RefinementCache none;
-  take(byWindows(
-      stretch, {kWindow * cell_m, kAround * cell_m},
+  take(overWindows(
+      cutFromEnd(stretch, kWindow * cell_m, kWindow * cell_m), {kAround * cell_m},
       [&](const Polyline& window) { return acrossEdges(cost, search, window); }, none, 1, stop));
   take(withFewerTurns(cost, stretch));
   return stretch;
@@ -191,9 +180,8 @@ Polyline Refiner::operator()(const MotionCost& cost, Polyline route, int threads
     route = std::move(tried);
   };
   const PointSearch search(cost, {.side = options_.points_per_side});
-  const WindowCut cut{kMarks * cell_m, kAround * cell_m, kNear * cell_m};
   take(overWindows(
-      cutAtMarks(route, cut.length_m), cut,
+      cutAtMarks(route, kMarks * cell_m), {kAround * cell_m, kNear * cell_m},
       [&](const Polyline& stretch) { return refinedStretch(cost, search, stretch, stop); }, memo_, threads,
       stop));
   take(withFewerTurns(cost, withLongerTacks(cost, route)));

@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 700},    {"terramech", 19721}, {"maps", 6710},     {"costmap", 12292},
-                           {"planner", 22426}, {"cli", 13774},       {"examples", 1577}, {"tests", 56367}};
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 19714}, {"maps", 6710},     {"costmap", 12292},
+                           {"planner", 22424}, {"cli", 13774},       {"examples", 1541}, {"tests", 56313}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

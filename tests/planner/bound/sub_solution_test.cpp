@@ -4,7 +4,7 @@
 #include <random>
 
 #include <talus/planner/bound/lower_bound.hpp>
-#include <talus/planner/bound/sub_solution_check.hpp>
+#include <talus/planner/bound/sub_solution.hpp>
 #include <talus/planner/grid/point_route.hpp>
 
 #include "drawn_map.hpp"
@@ -28,8 +28,7 @@ SubSolution::Parts partsOf(const MapPointer& map, const Segment& places,
           .places = places,
           .most_J = most_J,
           .cheapest_J = cheapestMetre_J(*map),
-          .from_start = cornerField(map, octagon_of, corners, {}, RouteSense::FromStart),
-          .region = {}};
+          .from_start = cornerField(map, octagon_of, corners, {}, RouteSense::FromStart)};
 }
 
 // A sub-solution by a search that takes at most `quota` nodes and checks.

@@ -5,7 +5,6 @@
 #include <talus/common/common.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>
-#include <talus/planner/grid/windowed_plan.hpp>
 #include <talus/planner/route/polyline.hpp>
 
 #include "rolling_ground.hpp"

@@ -1,9 +1,7 @@
-#include <atomic>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include <talus/common/common.hpp>
 #include <talus/planner/refine/any_angle.hpp>
 #include <talus/planner/refine/vertices.hpp>
 
@@ -32,71 +30,6 @@ TEST(RefinementCache, WindowsNearChangedGroundAreDropped) {
     cache.forget(c.corners);
     EXPECT_EQ(!cache.find(kWindow), c.forgotten) << c.corners.from.x_m << "," << c.corners.from.y_m;
   }
-}
-
-Polyline wave(double from_m, double to_m) {
-  Polyline line;
-  for (double x = from_m; x <= to_m; x += 1.0) line.push_back({x, 3.0 * std::sin(0.2 * x)});
-  return line;
-}
-
-// A refinement that marks every window by moving its middle point.
-Polyline lifted(const Polyline& window) {
-  Polyline made = window;
-  if (made.size() > 2) made[made.size() / 2].y_m += 1.0;
-  return made;
-}
-
-constexpr WindowCut kCut{.length_m = 20.0, .overlap_m = 5.0, .reach_m = 2.0};
-
-TEST(RouteWindows, ResultIsIndependentOfThreadsAndCache) {
-  RefinementCache one, two, again;
-  const Polyline route = wave(0.0, 200.0);
-  const Polyline made = byWindows(route, kCut, lifted, one, 1);
-  EXPECT_NE(made, route);
-  EXPECT_EQ(made.front(), route.front());
-  EXPECT_EQ(made.back(), route.back());
-  EXPECT_EQ(made, byWindows(route, kCut, lifted, two, 2));
-  byWindows(wave(50.0, 200.0), kCut, lifted, again, 1);
-  EXPECT_EQ(made, byWindows(route, kCut, lifted, again, 1));
-}
-
-TEST(RouteWindows, UnchangedWindowsAreNotRecomputed) {
-  RefinementCache memo;
-  std::atomic<int> worked{0};
-  const auto work = [&worked](const Polyline& window) {
-    ++worked;
-    return lifted(window);
-  };
-  const Polyline route = wave(0.0, 200.0);
-  byWindows(route, kCut, work, memo, 2);
-  const int whole = worked.exchange(0);
-  EXPECT_GT(whole, 12);
-  byWindows(route, kCut, work, memo, 2);
-  EXPECT_EQ(worked.exchange(0), 0);
-  memo.forget({{100.0, 0.0}, {101.0, 0.0}});  // inside one window, possibly within reach of a joint
-  byWindows(route, kCut, work, memo, 2);
-  const int part = worked.exchange(0);
-  EXPECT_GE(part, 1);
-  EXPECT_LE(part, 4);
-  memo.forget({{300.0, 0.0}, {301.0, 0.0}});
-  byWindows(route, kCut, work, memo, 2);
-  EXPECT_EQ(worked.exchange(0), 0);
-  memo.newRound();
-  memo.newRound();
-  byWindows(route, kCut, work, memo, 2);
-  EXPECT_EQ(worked.exchange(0), whole);
-}
-
-TEST(RouteWindows, StopLeavesTheRouteUnchanged) {
-  RefinementCache memo;
-  std::stop_source source;
-  source.request_stop();
-  ProgressMonitor watch;
-  watch.stop = source.get_token();
-  const Polyline route = wave(0.0, 100.0);
-  const Polyline made = byWindows(route, kCut, lifted, memo, 1, StopCheck(watch));
-  EXPECT_NEAR(length_m(made), length_m(route), 1e-9);
 }
 
 using testing::drawn;
@@ -139,6 +72,23 @@ TEST(AnyAngle, CostNeverIncreases) {
     EXPECT_EQ(route.front(), grid.front());
     EXPECT_EQ(route.back(), grid.back());
   }
+}
+
+// Property: the refined route depends neither on the number of threads nor on kept results.
+TEST(AnyAngle, RouteIsIndependentOfThreadsAndKeptResults) {
+  const MotionCost cost(randomMap({.width = 500, .height = 40, .seed = 3, .blocked = 0.0, .roughness = 0.1}));
+  Polyline wave, shifted;
+  for (double x = 5.5; x < 495.0; x += 1.0) {
+    wave.push_back({x, 20.5 + 12.0 * std::sin(0.05 * x)});
+    shifted.push_back({x, x < 200.0 ? wave.back().y_m : 20.5});
+  }
+  const Polyline made = Refiner()(cost, wave);
+  EXPECT_LT(cost.along(made), cost.along(wave));
+  Refiner kept;
+  kept(cost, shifted);
+  EXPECT_EQ(kept(cost, wave, 2), made);
+  kept.forget({{100.0, 20.0}, {101.0, 21.0}});
+  EXPECT_EQ(kept(cost, wave, 2), made);
 }
 
 }  // namespace any_angle_test
