@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 #include <stdexcept>
 #include <string>
 
@@ -72,9 +71,14 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
     return judged(model, belief, cost.detail(plane, worst), ground.states->steepest(step * CellCode::kStep));
   };
   // Categories are monotone in the gradient.
-  const auto steps = std::views::iota(0, kSteps - 1);
-  const int refused = *std::ranges::partition_point(
-      steps, [&](int step) { return judgedAt(step).category < Category::Dangerous; });
+  int refused = 0;
+  for (int end = kSteps - 1; refused < end;) {
+    const int middle = (refused + end) / 2;
+    if (judgedAt(middle).category < Category::Dangerous)
+      refused = middle + 1;
+    else
+      end = middle;
+  }
   const Entry dangerous = entryOf(judgedAt(refused));
   for (int step = 0; step < kSteps; ++step) {
     const RankedCategory here = model.category(belief, ground.states->steepest(step * CellCode::kStep));

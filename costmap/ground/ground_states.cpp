@@ -368,8 +368,8 @@ GroundClass groundClass(int number, const terramech::SoilPrior& prior, const ter
   UncertainParameters parameters;
   parameters.covariance.resize(kFields.size() * kFields.size());
   for (std::size_t k = 0; k < kFields.size(); ++k) {
-    const auto [field, deviation] = kFields[k];
-    parameters.covariance[k * kFields.size() + k] = std::pow(prior.deviation.*deviation, 2);
+    const auto field = kFields[k].first;
+    parameters.covariance[k * kFields.size() + k] = std::pow(prior.deviation.*kFields[k].second, 2);
     parameters.add.emplace_back([field](RefinedModel& model, double change) {
       double& value = model.soil.*field;
       return value = std::max(value + change, 1e-3 * value);

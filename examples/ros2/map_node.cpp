@@ -16,10 +16,6 @@ namespace {
 
 constexpr int kTile = talus::costmap::CostTile::kSide;
 
-void require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument(what);
-}
-
 // The plugins of a process run in nodes of their own, and its arguments may rename all nodes; this one keeps its name.
 rclcpp::NodeOptions named() {
   rclcpp::NodeOptions options;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 namespace talus_ros2 {
@@ -18,10 +17,6 @@ using talus::planner::CellJudgement;
 
 constexpr double kMostCells = 1 << 24;  // 64 MB of heights
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-void require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument(what);
-}
 
 // Returns the height between the cells of a message, at a place in units of its cells; nullopt: not seen. Within a
 // hundredth of a cell, the height is that of the cell.

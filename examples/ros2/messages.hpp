@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@
 #include <talus/planner/planner.hpp>
 
 namespace talus_ros2 {
+
+/// Throws std::invalid_argument if a condition does not hold.
+inline void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
+}
 
 /// Returns a position and an orientation of a message as a transform; an orientation of zeros is none.
 template <typename Position, typename Orientation>
