@@ -334,6 +334,7 @@ GroundClass classOf(int number, const RefinedModel& tested, const UncertainParam
     model.soil = underGravity(model.soil, rover.gravity_m_s2, exponent);
     return terramech::mobilityReference(model, rover).drawbar_pull_over_load;
   };
+  terramech::requireForces(tested);
   GroundClass ground;
   ground.number = number;
   ground.soil = underGravity(tested.soil, rover.gravity_m_s2);

@@ -14,7 +14,7 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 700},    {"terramech", 19715}, {"maps", 6710},     {"costmap", 12296},
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 19715}, {"maps", 6710},     {"costmap", 12297},
                            {"planner", 22424}, {"cli", 13774},       {"examples", 1538}, {"tests", 56313}};
 
 // A change of this many lines or more below the budget lowers it.
