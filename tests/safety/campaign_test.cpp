@@ -83,7 +83,7 @@ TEST(SafetyCampaignFile, InterruptedCampaignResumes) {
     EXPECT_EQ(one.rover, other.rover);
     EXPECT_EQ(one.learned, other.learned);
   }
-  // The result of the field planner is compared in full, because its route does not depend on a time limit.
+  // The result of the field planner is compared in full, because it has no time limit.
   ASSERT_EQ(results[0].planner, "field");
   EXPECT_EQ(straight[0].exit, results[0].exit);
   EXPECT_EQ(straight[0].length_m, results[0].length_m);

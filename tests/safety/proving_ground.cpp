@@ -257,7 +257,7 @@ Errand errand(const ProvingGround& ground, std::uint64_t k) {
 Call planCall(const ProvingGround& ground, const Errand& errand, const std::string& output) {
   return {"plan " + demWords(ground) + " --map map.ot --start " + text(errand.start) + " --goal " +
           text(errand.goal) + " --planner " + errand.planner +
-          (errand.planner == "field" ? "" : " --no-proof") + " --time 0.25 --seed " +
+          (errand.planner == "field" ? "" : " --no-proof --time 0.25") + " --seed " +
           std::to_string(ground.number + 1) + " -o " + output};
 }
 
