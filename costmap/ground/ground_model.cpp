@@ -112,6 +112,27 @@ SteadyWheel GroundModel::onSlope(int class_index, double gradient, bool in_rut) 
   return at(high);
 }
 
+std::shared_ptr<const GroundModel> GroundModel::withResistance(int class_index, double deviations) const {
+  constexpr double kChange = 0.05, kLeast = 0.3, kMost = 2.0;
+  Ground& own = of(class_index);
+  const std::lock_guard lock(own.changing);
+  std::shared_ptr<const GroundModel>& known = own.with_resistance[deviations];
+  if (known) return known;
+  GroundClass ground = parts_.classes[static_cast<std::size_t>(class_index)];
+  double& exponent = ground.soil.sinkage_exponent;
+  const double of_class = exponent;
+  const auto resistance = [&](double changed) {
+    exponent = changed;
+    const SteadyWheel reference = terramech::mobilityReference(modelOf(ground), parts_.rover);
+    return reference.torque_over_load_radius - reference.drawbar_pull_over_load;
+  };
+  const double slope = (resistance(of_class + kChange) - resistance(of_class - kChange)) / (2.0 * kChange);
+  const double change = slope > 0.0 ? deviations * ground.resistance_std / slope : 0.0;
+  exponent = std::clamp(of_class + change, kLeast, kMost);
+  return known = std::make_shared<const GroundModel>(
+             Parts{.rover = parts_.rover, .classes = {ground}, .policy = parts_.policy});
+}
+
 StrengthOfClass GroundModel::strengthOf(int class_index, const GroundBelief& belief) const {
   const SteadyWheel& fresh = reference(class_index, false);
   const double thrust = std::max(fresh.torque_over_load_radius, kLeastThrust);

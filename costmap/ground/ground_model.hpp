@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -112,7 +113,12 @@ struct GroundClass {
   std::vector<terramech::Effect> effects{};
   /// Standard deviation of the drawbar pull over load DP/W between places of the class, at slip 0.5 [-].
   double pull_std = 0.05;
-  double mean_std = 0.05;    ///< standard deviation of the mean DP/W of the class [-]
+  double mean_std = 0.05;  ///< standard deviation of the mean DP/W of the class [-]
+  /// Standard deviation of the mean resistance (thrust less pull) over load at slip 0.5 [-].
+  double resistance_std = 0.02;
+  double modulus_std = 0.2;  ///< standard deviation of the logarithm of the shear modulus [-]
+  /// Standard deviation of the pull over load in ruts that is not of strength, resistance and shear modulus [-].
+  double rut_std = 0.0;
   double sinkage_std = 0.1;  ///< standard deviation of sinkage over wheel radius z/r between places [-]
   double rut_stiffness_std =
       0.0;  ///< standard deviation of Soil::rut_stiffness, drawn in simulated worlds [-]
@@ -188,6 +194,10 @@ class GroundModel {
     return of(class_index).reference[in_rut ? 1 : 0];
   }
 
+  /// Returns a model of one class alone, with its resistance changed by a number of standard deviations
+  /// (GroundClass::resistance_std) through the sinkage exponent, which is kept from 0.3 to 2.
+  std::shared_ptr<const GroundModel> withResistance(int class_index, double deviations) const;
+
   /// Returns the cost curve and the tabulated travel states of ground that belongs to a class and has the
   /// estimated strength `belief`.
   GroundCost ground(int class_index, const GroundBelief& belief) const {
@@ -227,6 +237,8 @@ class GroundModel {
     std::optional<terramech::SlopeEquilibrium> slope;
     std::array<double, 2> most_slip{};  // least slip at a maximum of the pull, on fresh ground and in a rut
     std::shared_ptr<const SlopeLattice> lattice;
+    std::mutex changing;
+    std::map<double, std::shared_ptr<const GroundModel>> with_resistance;
   };
   Ground& of(int class_index) const noexcept { return *grounds_[static_cast<std::size_t>(class_index)]; }
   const terramech::SlopeEquilibrium& slope(int class_index) const;
@@ -244,7 +256,8 @@ class GroundModel {
 /// standard deviation of drawbar pull over load DP/W at the reference slip 0.5, by central differences over
 /// the standard deviations of cohesion, friction angle, sinkage exponent, moduli, shear modulus and
 /// slip-sinkage exponent as independent parameters; a prior without standard deviations keeps GroundClass's
-/// default. A soil that was tested in greater gravity is converted by underGravity(); mean_std then includes
+/// default. resistance_std, modulus_std and rut_std are obtained likewise, at least the defaults. A soil that was
+/// tested in greater gravity is converted by underGravity(); mean_std then includes
 /// the effect of a gravity exponent of 0.5 instead of 1. Throws std::invalid_argument if
 /// mobilityReference() rejects the soil or the rover.
 GroundClass groundClass(int number, const terramech::SoilPrior& prior, const terramech::Rover& rover);

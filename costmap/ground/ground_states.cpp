@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/terramech/mobility/wheel_forces_table.hpp>
 #include <talus/terramech/numerics/functions.hpp>
@@ -310,14 +312,15 @@ using terramech::RefinedModel;
 using terramech::Soil;
 using terramech::SoilDeviation;
 
-constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 7> kFields{
+constexpr std::array<std::pair<double Soil::*, double SoilDeviation::*>, 8> kFields{
     {{&Soil::cohesion_Pa, &SoilDeviation::cohesion_Pa},
      {&Soil::friction_angle_rad, &SoilDeviation::friction_angle_rad},
      {&Soil::sinkage_exponent, &SoilDeviation::sinkage_exponent},
      {&Soil::cohesive_modulus, &SoilDeviation::cohesive_modulus},
      {&Soil::frictional_modulus, &SoilDeviation::frictional_modulus},
      {&Soil::shear_modulus_m, &SoilDeviation::shear_modulus_m},
-     {&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent}}};
+     {&Soil::slip_sinkage_exponent, &SoilDeviation::slip_sinkage_exponent},
+     {&Soil::rut_stiffness, &SoilDeviation::rut_stiffness}}};
 
 // Uncertain parameters of a model: each function adds a change to its parameter and returns the new value.
 struct UncertainParameters {
@@ -325,41 +328,80 @@ struct UncertainParameters {
   std::vector<double> covariance;  // row-major
 };
 
+// Ground of a model at the reference slip: pull and resistance, pull in a rut less that on fresh ground, all over
+// load, thrust there, and the logarithm of the shear modulus.
+using Reference = Eigen::Matrix<double, 5, 1>;
+enum ReferenceIndex { kPull, kResistance, kInRut, kThrustInRut, kLogModulus };
+
+Reference referenceOf(RefinedModel model, const terramech::Rover& rover, double gravity_exponent = 1.0) {
+  model.soil = underGravity(model.soil, rover.gravity_m_s2, gravity_exponent);
+  const SteadyWheel fresh = terramech::mobilityReference(model, rover),
+                    rut = terramech::mobilityReference(terramech::rutted(model), rover, 2);
+  return Reference{fresh.drawbar_pull_over_load, fresh.torque_over_load_radius - fresh.drawbar_pull_over_load,
+                   rut.drawbar_pull_over_load - fresh.drawbar_pull_over_load, rut.torque_over_load_radius,
+                   std::log(model.soil.shear_modulus_m)};
+}
+
+// Central difference for a change that `add` makes: change of the reference over change of the parameter.
+template <typename Add>
+Reference changeOf(const RefinedModel& model, const terramech::Rover& rover, double step, const Add& add) {
+  RefinedModel more = model, less = model;
+  const double width = add(more, step) - add(less, -step);
+  if (!(width > 0.0)) return Reference::Zero();
+  return (referenceOf(more, rover) - referenceOf(less, rover)) / width;
+}
+
+double addTo(double& value, double change) {
+  return value = std::max(value + change, 1e-3 * value);
+}
+
 GroundClass classOf(int number, const RefinedModel& tested, const UncertainParameters& parameters,
                     const terramech::Rover& rover) {
   // Step of the central difference, in standard deviations: a half keeps parameters near their bounds in range.
   constexpr double kStep = 0.5;
   constexpr double kGravityExponentStd = 0.5;  // of underGravity(): ours
-  const auto pullOf = [&](RefinedModel model, double exponent = 1.0) {
-    model.soil = underGravity(model.soil, rover.gravity_m_s2, exponent);
-    return terramech::mobilityReference(model, rover).drawbar_pull_over_load;
-  };
+  constexpr double kShapeStep = 0.05;
   terramech::requireForces(tested);
   GroundClass ground;
   ground.number = number;
   ground.soil = underGravity(tested.soil, rover.gravity_m_s2);
   ground.effects = terramech::withoutSensors(tested).effects;
-  const std::size_t count = parameters.add.size();
-  std::vector<double> slope;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double std = std::sqrt(std::max(0.0, parameters.covariance[k * count + k]));
-    RefinedModel more = tested, less = tested;
+  const auto count = static_cast<Eigen::Index>(parameters.add.size());
+  if (count == 0) return ground;
+  const Eigen::Map<const Eigen::MatrixXd> covariance(parameters.covariance.data(), count, count);
+  Eigen::Matrix<double, 5, Eigen::Dynamic> slope(5, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double std = std::sqrt(std::max(0.0, covariance(k, k)));
     try {
-      const double width = parameters.add[k](more, kStep * std) - parameters.add[k](less, -kStep * std);
-      slope.push_back(width > 0.0 ? (pullOf(more) - pullOf(less)) / width : 0.0);
+      slope.col(k) = changeOf(tested, rover, kStep * std, parameters.add[static_cast<std::size_t>(k)]);
     } catch (const std::invalid_argument& e) {
       std::ostringstream text;
       text << e.what() << "; it is the mean with half of its std " << std;
       throw std::invalid_argument(text.str());
     }
   }
-  double variance = 0.0;
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < count; ++j)
-      variance += slope[i] * parameters.covariance[i * count + j] * slope[j];
-  if (variance > 0.0) ground.mean_std = std::sqrt(variance);
+  const auto stdOf = [&](const Reference& of) {
+    const Eigen::RowVectorXd gradient = of.transpose() * slope;
+    return std::sqrt(std::max(0.0, (gradient * covariance).dot(gradient)));
+  };
+  const Reference mean = referenceOf(tested, rover);
+  if (const double std = stdOf(Reference::Unit(kPull)); std > 0.0) ground.mean_std = std;
   if (tested.soil.test_gravity_m_s2 > rover.gravity_m_s2)
-    ground.mean_std = std::hypot(ground.mean_std, pullOf(tested, 1.0 - kGravityExponentStd) - pullOf(tested));
+    ground.mean_std =
+        std::hypot(ground.mean_std, (referenceOf(tested, rover, 1.0 - kGravityExponentStd) - mean)[kPull]);
+  ground.resistance_std = std::max(ground.resistance_std, stdOf(Reference::Unit(kResistance)));
+  ground.modulus_std = std::max(ground.modulus_std, stdOf(Reference::Unit(kLogModulus)));
+  // What strength, resistance (by the sinkage exponent) and shear modulus leave of the pull in a rut.
+  const auto by = [&](double Soil::*field) {
+    return changeOf(tested, rover, kShapeStep * tested.soil.*field,
+                    [field](RefinedModel& model, double change) { return addTo(model.soil.*field, change); });
+  };
+  Reference left = Reference::Unit(kInRut);
+  left[kPull] = 1.0 - mean[kThrustInRut] / (mean[kPull] + mean[kResistance]);
+  const Reference by_exponent = by(&Soil::sinkage_exponent), by_modulus = by(&Soil::shear_modulus_m);
+  left[kResistance] = -left.dot(by_exponent) / by_exponent[kResistance];
+  left[kLogModulus] = -left.dot(by_modulus) / by_modulus[kLogModulus];
+  ground.rut_std = stdOf(left);
   return ground;
 }
 
@@ -371,10 +413,8 @@ GroundClass groundClass(int number, const terramech::SoilPrior& prior, const ter
   for (std::size_t k = 0; k < kFields.size(); ++k) {
     const auto field = kFields[k].first;
     parameters.covariance[k * kFields.size() + k] = std::pow(prior.deviation.*kFields[k].second, 2);
-    parameters.add.emplace_back([field](RefinedModel& model, double change) {
-      double& value = model.soil.*field;
-      return value = std::max(value + change, 1e-3 * value);
-    });
+    parameters.add.emplace_back(
+        [field](RefinedModel& model, double change) { return addTo(model.soil.*field, change); });
   }
   GroundClass ground = classOf(number, terramech::onSoil(prior.mean), parameters, rover);
   ground.rut_stiffness_std = prior.deviation.rut_stiffness;

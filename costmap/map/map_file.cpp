@@ -249,6 +249,9 @@ void visitClass(V& v, C& c, const std::string& at) {
   v.added(at + "soil.side_bulldozing", soil.side_bulldozing);
   v.added(at + "soil.rut_stiffness", soil.rut_stiffness);
   v.added(at + "rut_stiffness_std", c.rut_stiffness_std);
+  v.added(at + "resistance_std", c.resistance_std);
+  v.added(at + "modulus_std", c.modulus_std);
+  v.added(at + "rut_std", c.rut_std);
   v.count(at + "effects", c.effects);
   for (std::size_t k = 0; k < c.effects.size(); ++k)
     visitEffect(v, c.effects[k], at + "effect." + std::to_string(k) + '.');

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include <talus/costmap/telemetry/drive_posterior.hpp>
@@ -13,56 +14,97 @@ constexpr int kParts = DriveEstimate::kParts;
 constexpr std::size_t kChunk = 16;      // moments of one chunk
 constexpr double kGradientStep = 0.01;  // width of a bin of gradients
 constexpr double kIntegralScale = 2.0 / 3.0;
-constexpr double kModelError = 0.02, kSlipNoise = 0.015, kGradientNoise = 0.01, kSecondNoise = 0.03;
+constexpr double kModelError = 0.01, kSlipNoise = 0.015, kGradientNoise = 0.01, kSecondNoise = 0.03;
+constexpr double kUnrelatedOffset = 0.3;
+constexpr double kEvidence = 0.5;  // power of the likelihood: the curve of a class is never exact
+constexpr double kCoarseEvidence = 0.1;
+constexpr double kNegligible = 1e-4;    // probability of a hypothesis by the first grid that the second omits
 constexpr double kMostSecondStd = 0.1;  // a second slip with a greater error is not used
 constexpr double kMostVariance = 1.0;   // greatest variance of a slip, where the curve is flat
 constexpr double kLeastShare = 0.02, kLeastSteepness = 0.05;
-constexpr double kEvidence = 0.5;  // power of the likelihood: the curve of a class is never exact
-constexpr std::array<double, 5> kVariations{0.0, 0.35, 0.7, 1.0, 1.4};
+constexpr std::array<double, 4> kVariations{0.0, 0.4, 0.8, 1.3};
 // Errors of a slip that is computed from the class, and of one unrelated to the ground.
-constexpr std::array<double, 5> kComputedErrors{0.001, 0.002, 0.004, 0.007, 0.01},
-    kUnrelatedErrors{0.01, 0.03, 0.07, 0.15, 0.3};
+constexpr std::array<double, 4> kComputedErrors{0.001, 0.003, 0.006, 0.01},
+    kUnrelatedErrors{0.01, 0.04, 0.12, 0.3};
+// Resistances are a sum of normal distributions about nodes: positions over their deviation without that of one
+// node, and deviation of one node over that of all.
+constexpr std::array<double, 5> kResistances{-2.0, -1.0, 0.0, 1.0, 2.0};
+constexpr double kNodeStd = 0.4;
+constexpr double kNodesStd = 0.917;  // (1 - kNodeStd^2)^(1/2)
 constexpr double kReferenceSlip = 0.5;
 
-constexpr int kSlips = 291;
-constexpr double kLeastSlip = -0.5, kSlipStep = 0.005;
+constexpr int kSlips = 146;
+constexpr double kLeastSlip = -0.5, kSlipStep = 0.01;
 double slipAt(double i) noexcept {
   return kLeastSlip + kSlipStep * i;
 }
 
-// Mean pull of all wheels of a rover over slip, and their thrust over that of the class at the reference
-// slip.
+// Curve of all wheels of a rover on one soil of a class. Ground whose pull at the reference slip departs by D from
+// that of the class has at a slip the mean pull base + D share. Bends are changes for a change of the resistance by
+// its standard deviation, at equal D.
 struct Curve {
-  std::array<double, kSlips> pull{}, share{};
+  std::array<double, kSlips> base{}, share{}, base_bend{}, share_bend{};
 
-  Curve(const GroundModel& model, int class_index, int rutted, int wheels) {
+  Curve(const GroundModel& soil, int rutted, int wheels, double of_class) {
     const double in_rut = static_cast<double>(rutted) / wheels;
-    const double thrust = model.reference(class_index, false).torque_over_load_radius;
+    const SteadyWheel& reference = soil.reference(0, false);
     for (int i = 0; i < kSlips; ++i) {
-      const SteadyWheel fresh = model.steady(class_index, {.slip = slipAt(i)});
-      const SteadyWheel rut =
-          rutted > 0 ? model.steady(class_index, {.slip = slipAt(i), .in_rut = true}) : fresh;
+      const SteadyWheel fresh = soil.steady(0, {.slip = slipAt(i)});
+      const SteadyWheel rut = rutted > 0 ? soil.steady(0, {.slip = slipAt(i), .in_rut = true}) : fresh;
       const auto at = static_cast<std::size_t>(i);
-      pull[at] = (1.0 - in_rut) * fresh.drawbar_pull_over_load + in_rut * rut.drawbar_pull_over_load;
-      share[at] = (1.0 - in_rut) * fresh.torque_over_load_radius + in_rut * rut.torque_over_load_radius;
-      share[at] = std::max(share[at] / thrust, kLeastShare);
+      const double pull = (1.0 - in_rut) * fresh.drawbar_pull_over_load + in_rut * rut.drawbar_pull_over_load,
+                   thrust =
+                       (1.0 - in_rut) * fresh.torque_over_load_radius + in_rut * rut.torque_over_load_radius;
+      share[at] = std::max(thrust / reference.torque_over_load_radius, kLeastShare);
+      base[at] = pull - (reference.drawbar_pull_over_load - of_class) * share[at];
     }
   }
 
+  // Slip on a gradient, its changes for a change of the pull and of the resistance, and the share of the thrust.
+  struct Driven {
+    double slip, by_pull, by_resistance, share;
+  };
   // Least slip at which ground with a departure has the pull of a gradient (B2).
-  double slipOn(double gradient, double departure) const {
-    const auto at = [&](std::size_t i) { return pull[i] + departure * share[i]; };
+  Driven on(double gradient, double departure) const {
+    const auto at = [&](std::size_t i) { return base[i] + departure * share[i]; };
     std::size_t from = 0;
-    while (from + 2 < pull.size() && at(from + 1) < gradient) ++from;
+    while (from + 2 < base.size() && at(from + 1) < gradient) ++from;
     const double low = at(from), high = at(from + 1);
-    return slipAt(static_cast<double>(from) +
-                  (high > low ? std::clamp((gradient - low) / (high - low), 0.0, 1.0) : 1.0));
+    const double by_pull = 1.0 / std::max((high - low) / kSlipStep, kLeastSteepness);
+    return {slipAt(static_cast<double>(from) +
+                   (high > low ? std::clamp((gradient - low) / (high - low), 0.0, 1.0) : 1.0)),
+            by_pull, -by_pull * (base_bend[from] + departure * share_bend[from]), share[from]};
   }
-  double pullAt(double slip) const {
+  double pullAt(double slip, double departure) const {
     const double at = std::clamp((slip - kLeastSlip) / kSlipStep, 0.0, kSlips - 1.001);
     const auto i = static_cast<std::size_t>(at);
-    return pull[i] + (at - static_cast<double>(i)) * (pull[i + 1] - pull[i]);
+    const double low = base[i] + departure * share[i], high = base[i + 1] + departure * share[i + 1];
+    return low + (at - static_cast<double>(i)) * (high - low);
   }
+};
+using Curves = std::vector<Curve>;  // by node of the resistance
+
+Curves curvesOf(const GroundModel& model, int class_index, int rutted, int wheels) {
+  Curves curves;
+  const double of_class = model.reference(class_index, false).drawbar_pull_over_load;
+  for (const double node : kResistances)
+    curves.emplace_back(*model.withResistance(class_index, node * kNodesStd), rutted, wheels, of_class);
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const std::size_t less = k > 0 ? k - 1 : 0, more = std::min(k + 1, curves.size() - 1);
+    const double between = (kResistances[more] - kResistances[less]) * kNodesStd;
+    for (std::size_t i = 0; i < kSlips; ++i) {
+      curves[k].base_bend[i] = (curves[more].base[i] - curves[less].base[i]) / between;
+      curves[k].share_bend[i] = (curves[more].share[i] - curves[less].share[i]) / between;
+    }
+  }
+  return curves;
+}
+
+// Sensor on ground whose shear modulus is `modulus` times that of the class: wheels slip by `modulus` times the slip
+// that the sensor is given, which is that of the curve of the class.
+struct Sensor {
+  SlipSensor sensor;
+  double modulus = 1.0;
 };
 
 // Hypothesis of the slip sensor: from part `from` on, `after` replaces `sensor`, with an offset of its own.
@@ -70,9 +112,8 @@ struct Hypothesis {
   const char* kind;
   double prior;
   double offset_std;
-  std::size_t sensor, after = 0;
+  std::size_t sensor, after;
   int from = kParts;
-  bool of_shape = true;  // the scale is that of the shear modulus of the ground
 };
 
 // Logarithm of the prior of a departure over mean_std: normal, or with the probability 0.1 (the soil is another
@@ -84,213 +125,283 @@ double logPrior(double departure) {
 constexpr double kPriorVariance = 0.9 + 0.1 * 9.0;  // over that of mean_std
 
 struct Hypotheses {
-  std::vector<SlipSensor> sensors;
+  std::vector<Sensor> sensors;
   std::vector<Hypothesis> all;
+
+  // Those with a probability above kNegligible.
+  Hypotheses probable(const std::vector<double>& weights) const {
+    Hypotheses out;
+    std::vector<std::size_t> number(sensors.size(), sensors.size());
+    const auto kept = [&](std::size_t sensor) {
+      if (number[sensor] == sensors.size()) {
+        number[sensor] = out.sensors.size();
+        out.sensors.push_back(sensors[sensor]);
+      }
+      return number[sensor];
+    };
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!(weights[i] > kNegligible)) continue;
+      out.all.push_back(all[i]);
+      out.all.back().sensor = kept(all[i].sensor);
+      out.all.back().after = kept(all[i].after);
+    }
+    return out;
+  }
 };
 
-Hypotheses hypotheses() {
+Hypotheses hypotheses(double modulus_std) {
   using Kind = SlipSensor::Kind;
-  constexpr double kShape = 0.2, kSound = 0.015, kOffset = 0.1, kStep = 0.05;
-  constexpr int kLow = -46, kTop = 14;
+  constexpr double kSound = 0.015, kOffset = 0.1, kFaultOffset = 0.03;
+  constexpr int kModuli = 7, kScales = 16;
+  constexpr double kModulusStep = 0.35, kScaleStep = 0.15;  // of the logarithm; the former over its deviation
   Hypotheses h;
-  std::vector<std::pair<std::size_t, double>> sound;
-  double of_shape = 0.0;
-  for (int i = kLow; i <= kTop; ++i) {
-    const double log_scale = kStep * i, off = log_scale / kShape, density = std::exp(-0.5 * off * off);
-    if (density > 1e-3) {
-      sound.emplace_back(h.sensors.size(), density);
-      of_shape += density;
-    }
-    h.sensors.push_back({Kind::Linear, std::exp(log_scale)});
-  }
-  const std::size_t unrelated = h.sensors.size();
-  h.sensors.push_back({Kind::Unrelated, 0.0});
-  for (const auto& [sensor, density] : sound) {
-    const double part = density / of_shape;
-    h.all.push_back({"sound", 0.80 * part, kSound, sensor});
-    h.all.push_back({"offset", 0.05 * part, kOffset, sensor});
-    for (int from = 1; from < kParts; ++from) {
-      h.all.push_back({"step", 0.02 / (kParts - 1) * part, kOffset, sensor, sensor, from});
-      h.all.push_back({"stuck", 0.01 / (kParts - 1) * part, kOffset, sensor, unrelated, from});
-    }
-  }
-  int scales = 0;
-  for (int i = kLow; i <= 2; ++i) ++scales;
-  for (int i = kLow; i <= 2; ++i)
-    h.all.push_back({"scale", 0.05 / scales, 0.03, static_cast<std::size_t>(i - kLow), 0, kParts, false});
-  const auto add = [&](const char* kind, double prior, const std::vector<SlipSensor>& of_kind) {
+  const auto add = [&](const char* kind, double prior, const std::vector<SlipSensor>& of_kind,
+                       double offset_std) {
     for (const SlipSensor& one : of_kind) {
-      h.all.push_back(
-          {kind, prior / static_cast<double>(of_kind.size()), 0.03, h.sensors.size(), 0, kParts, false});
-      h.sensors.push_back(one);
+      const std::size_t at = h.sensors.size();
+      h.all.push_back({kind, prior / static_cast<double>(of_kind.size()), offset_std, at, at});
+      h.sensors.push_back({one});
     }
   };
-  std::vector<SlipSensor> knees;
+  add("unrelated", 0.02, {{Kind::Unrelated}}, kUnrelatedOffset);
+  add("of class", 0.005, {{Kind::OfClass}}, kFaultOffset);
+  std::vector<SlipSensor> knees, scales;
   for (const double knee : {0.1, 0.2, 0.3})
     for (const double scale : {0.0, 0.25, 0.5, 0.75}) knees.push_back({Kind::Knee, scale, knee});
-  add("compressed", 0.03, knees);
-  add("uphill", 0.02, {{Kind::Uphill, 0.25}, {Kind::Uphill, 0.4}, {Kind::Uphill, 0.55}, {Kind::Uphill, 0.7}});
+  for (int i = 0; i < kScales; ++i) scales.push_back({Kind::Linear, 1.1 * std::exp(-kScaleStep * i)});
+  add("compressed", 0.03, knees, kFaultOffset);
+  add("scale", 0.05, scales, kFaultOffset);
+  add("uphill", 0.02, {{Kind::Uphill, 0.25}, {Kind::Uphill, 0.4}, {Kind::Uphill, 0.55}, {Kind::Uphill, 0.7}},
+      kFaultOffset);
   add("by gradient", 0.02,
-      {{Kind::ByGradient, 0.5}, {Kind::ByGradient, 1.0}, {Kind::ByGradient, 1.5}, {Kind::ByGradient, 2.0}});
-  add("of class", 0.005, {{Kind::OfClass}});
-  h.all.push_back({"unrelated", 0.02, 0.3, unrelated, 0, kParts, false});
+      {{Kind::ByGradient, 0.5}, {Kind::ByGradient, 1.0}, {Kind::ByGradient, 1.5}, {Kind::ByGradient, 2.0}},
+      kFaultOffset);
+  for (int i = -kModuli; i <= kModuli; ++i) {
+    const double off = kModulusStep * i, modulus = std::exp(off * modulus_std);
+    const double part = kModulusStep * std::exp(-0.5 * off * off) / std::sqrt(2.0 * std::numbers::pi);
+    const std::size_t sensor = h.sensors.size();
+    h.sensors.push_back({{Kind::Linear, modulus}, modulus});
+    h.all.push_back({"sound", 0.80 * part, kSound, sensor, sensor});
+    h.all.push_back({"offset", 0.05 * part, kOffset, sensor, sensor});
+    for (int from = 1; from < kParts; ++from) {
+      h.all.push_back({"step", 0.02 / (kParts - 1) * part, kOffset, sensor, sensor, from});
+      h.all.push_back({"stuck", 0.01 / (kParts - 1) * part, kOffset, sensor, 0, from});
+    }
+  }
   return h;
 }
 
-// The log-likelihood is -(a b^2 - 2 f b + q)/2 in the offset b of the sensor.
-struct Parabola {
-  double a = 0.0, f = 0.0, q = 0.0;
-  void add(double w, double r, double rest) noexcept {
-    a += w;
-    f += w * r;
-    q += w * r * r + rest;
-  }
-  Parabola& operator+=(const Parabola& p) noexcept {
-    a += p.a;
-    f += p.f;
-    q += p.q;
+// A log-likelihood, quadratic in the resistance R: level + slope R - curvature R^2/2.
+struct Quadratic {
+  double level = 0.0, slope = 0.0, curvature = 0.0;
+  Quadratic& operator+=(const Quadratic& q) noexcept {
+    level += q.level;
+    slope += q.slope;
+    curvature += q.curvature;
     return *this;
   }
-  // Logarithm of the likelihood with b, normal with the standard deviation `std`, integrated.
-  double marginal(double std) const noexcept {
-    const double n = kEvidence * a, m = kEvidence * f, v = std * std;
-    return -0.5 * (kEvidence * q - m * m / (n + 1.0 / v) + std::log1p(n * v));
+  // R is normal with the standard deviation `std`: its mean, and the logarithm of the integral over it.
+  double mean(double std) const noexcept { return slope / (curvature + 1.0 / (std * std)); }
+  double integral(double std) const noexcept {
+    return level + 0.5 * slope * mean(std) - 0.5 * std::log1p(curvature * std * std);
   }
-  double offset(double std) const noexcept { return f / (a + 1.0 / (kEvidence * std * std)); }
+};
+
+// Log-likelihood -1/2 (sum of w (r - b - x R)^2 + rest) of residuals r, in the offset b of the sensor and in R.
+struct Residuals {
+  double w = 0.0, r = 0.0, x = 0.0, rr = 0.0, rx = 0.0, xx = 0.0;
+  void add(double weight, double residual, double by_curve, double rest) noexcept {
+    w += weight;
+    r += weight * residual;
+    x += weight * by_curve;
+    rr += weight * residual * residual + rest;
+    rx += weight * residual * by_curve;
+    xx += weight * by_curve * by_curve;
+  }
+  Residuals operator-(const Residuals& o) const noexcept {
+    return {w - o.w, r - o.r, x - o.x, rr - o.rr, rx - o.rx, xx - o.xx};
+  }
+  Residuals& operator+=(const Residuals& o) noexcept {
+    return *this = {w + o.w, r + o.r, x + o.x, rr + o.rr, rx + o.rx, xx + o.xx};
+  }
+  // With b, normal with the standard deviation `std`, integrated; without b for std = 0.
+  Quadratic marginal(double std) const noexcept {
+    const double n = std > 0.0 ? 1.0 / (w + 1.0 / (std * std)) : 0.0;
+    return {-0.5 * (rr - n * r * r + std::log1p(w * std * std)), rx - n * r * x, xx - n * x * x};
+  }
+  double offset(double std, double by_curve) const noexcept {
+    return (r - x * by_curve) / (w + 1.0 / (std * std));
+  }
 };
 
 // Readings of one bin of gradients in one part, weighted by the number of squares.
 struct Reading {
-  const Curve* curve = nullptr;
+  const Curves* curves = nullptr;
   int part = 0;
   double weight = 0.0, gradient = 0.0, slip = 0.0, scatter = 0.0, second = 0.0, seconds = 0.0,
-         second_variance = 0.0, of_class = 0.0;
-  std::array<double, kVariations.size()> variance{};  // of the slip (B3)
+         second_variance = 0.0, of_class = 0.0, in_rut = 0.0;
 };
 
 // All moments on ground of one class.
 struct OfClass {
-  std::size_t index = 0;
-  double mean_std = 0.0;
-  std::map<std::pair<int, int>, Curve> curves{};
+  const GroundModel& model;
+  int index;
+  const GroundClass& ground;
+  Curves fresh;
+  std::map<std::pair<int, int>, Curves> curves{};
   std::vector<Reading> readings{};
 
-  void add(const GroundModel& model, int rutted, int wheels, Reading reading) {
-    const auto class_index = static_cast<int>(index);
-    const double pull_std = model.parts().classes[index].pull_std;
-    const Curve& c = curves.try_emplace({rutted, wheels}, model, class_index, rutted, wheels).first->second;
-    const auto at = static_cast<std::size_t>(
-        std::clamp((reading.slip - kLeastSlip) / kSlipStep, 1.0, static_cast<double>(kSlips - 2)));
-    const double steepness = std::max((c.pull[at + 1] - c.pull[at - 1]) / (2.0 * kSlipStep), kLeastSteepness);
-    for (std::size_t t = 0; t < kVariations.size(); ++t) {
-      const double place = std::hypot(kVariations[t] * pull_std, kModelError) * c.share[at] / steepness;
-      const double slope = kGradientNoise / steepness;
-      reading.variance[t] = std::min(place * place + kSlipNoise * kSlipNoise + slope * slope, kMostVariance);
-    }
-    reading.of_class = c.slipOn(reading.gradient, 0.0);
-    reading.curve = &c;
+  OfClass(const GroundModel& of_model, int of)
+      : model(of_model),
+        index(of),
+        ground(model.parts().classes[static_cast<std::size_t>(of)]),
+        fresh(curvesOf(model, of, 0, 1)) {}
+
+  void add(int rutted, int wheels, Reading reading) {
+    auto known = curves.find({rutted, wheels});
+    if (known == curves.end())
+      known = curves.emplace(std::pair(rutted, wheels), curvesOf(model, index, rutted, wheels)).first;
+    reading.curves = &known->second;
+    reading.in_rut = static_cast<double>(rutted) / wheels;
+    reading.of_class = known->second[kResistances.size() / 2].on(reading.gradient, 0.0).slip;
     readings.push_back(reading);
   }
 
-  // Sums over departure and variation for each hypothesis, relative to exp(greatest).
-  struct Sums {
-    double weight = 0.0, first = 0.0, second = 0.0, offset = 0.0, changed = 0.0;
-  };
-  struct Table {
-    std::vector<Sums> sums;
-    double greatest = -std::numeric_limits<double>::infinity();
-  };
+  // Share of the wheels that ran in ruts.
+  double inRut() const {
+    double rutted = 0.0, all = 0.0;
+    for (const Reading& r : readings) {
+      rutted += r.weight * r.in_rut;
+      all += r.weight;
+    }
+    return rutted / all;
+  }
 
-  // Sums of the likelihood over the first parts, of one sensor at the given slips.
-  using Parts = std::array<Parabola, kParts + 1>;
-  Parts partsOf(const SlipSensor& sensor, const std::vector<double>& slips, std::size_t t) const {
+  // Sums over departure, resistance and variation, relative to exp(greatest).
+  struct Sums {
+    double greatest = -std::numeric_limits<double>::infinity();
+    double weight = 0.0, first = 0.0, second = 0.0, at = 0.0, at2 = 0.0, resistance = 0.0, offset = 0.0,
+           changed = 0.0;
+
+    void add(double log, double departure, double at_class, double of_resistance, double of_offset,
+             double of_changed) noexcept {
+      if (log > greatest) {
+        const double less = std::exp(greatest - log);
+        for (double* sum : {&weight, &first, &second, &at, &at2, &resistance, &offset, &changed})
+          *sum *= less;
+        greatest = log;
+      }
+      const double w = std::exp(log - greatest);
+      weight += w;
+      first += w * departure;
+      second += w * departure * departure;
+      at += w * at_class;
+      at2 += w * at_class * at_class;
+      resistance += w * of_resistance;
+      offset += w * of_offset;
+      changed += w * of_changed;
+    }
+  };
+  using Table = std::vector<Sums>;  // by hypothesis
+
+  // Variance of the slip at a place: ground that varies, curve and gradient.
+  double variance(const Curve::Driven& driven, std::size_t t) const {
+    const double place = std::hypot(kVariations[t] * ground.pull_std, kModelError) * driven.share;
+    return std::min((place * place + kGradientNoise * kGradientNoise) * driven.by_pull * driven.by_pull,
+                    kMostVariance);
+  }
+
+  // Residuals of the first parts for one sensor. Where the slip was measured twice: given the second slip.
+  using Parts = std::array<Residuals, kParts + 1>;
+  Parts partsOf(const Sensor& of, const std::vector<Curve::Driven>& driven,
+                const std::vector<double>& variances, std::size_t t, double evidence) const {
+    const auto& [sensor, modulus] = of;
     Parts until{};
     for (std::size_t k = 0; k < readings.size(); ++k) {
       const Reading& r = readings[k];
-      const double variance =
-          sensor.kind == SlipSensor::Kind::OfClass     ? kComputedErrors[t] * kComputedErrors[t]
-          : sensor.kind == SlipSensor::Kind::Unrelated ? kUnrelatedErrors[t] * kUnrelatedErrors[t]
-                                                       : r.variance[t];
-      const double w = r.weight / variance;
-      until[static_cast<std::size_t>(r.part) + 1].add(w,
-                                                      r.slip - sensor.read(slips[k], r.gradient, r.of_class),
-                                                      w * r.scatter + r.weight * std::log(variance));
+      const double slip = driven[k].slip;
+      const double gain = sensor.gain(slip, r.gradient), of_ground = variances[k];
+      double residual = r.slip - sensor.read(slip, r.gradient, r.of_class),
+             by_resistance = gain * driven[k].by_resistance,
+             variance = sensor.kind == SlipSensor::Kind::OfClass ? kComputedErrors[t] * kComputedErrors[t]
+                        : sensor.kind == SlipSensor::Kind::Unrelated
+                            ? kUnrelatedErrors[t] * kUnrelatedErrors[t]
+                            : kSlipNoise * kSlipNoise + gain * gain * of_ground;
+      if (r.seconds > 0.0) {
+        const double known = of_ground / (of_ground + r.second_variance / (modulus * modulus));
+        residual -= gain * known * (r.second / modulus - slip);
+        by_resistance *= 1.0 - known;
+        variance -= gain * gain * known * of_ground;
+      }
+      const double weight = evidence * r.weight, w = weight / variance;
+      until[static_cast<std::size_t>(r.part) + 1].add(w, residual, by_resistance,
+                                                      w * r.scatter + weight * std::log(variance));
     }
     for (std::size_t k = 0; k < kParts; ++k) until[k + 1] += until[k];
     return until;
   }
 
-  // Logarithm of the likelihood of the second slips, if they are `scale` times the given slips.
-  double bySecond(double scale, const std::vector<double>& slips, std::size_t t) const {
-    double log = 0.0;
+  // Likelihood of the second slips, if the slips of the wheels are `modulus` times those of the curve.
+  Quadratic bySecond(double modulus, const std::vector<Curve::Driven>& driven,
+                     const std::vector<double>& variances, double evidence) const {
+    Residuals all;
     for (std::size_t k = 0; k < readings.size(); ++k)
       if (const Reading& r = readings[k]; r.seconds > 0.0) {
-        const double off = r.second - scale * slips[k], variance = r.variance[t] + r.second_variance;
-        log -= 0.5 * kEvidence * r.weight * (off * off / variance + std::log(variance));
+        const double variance = modulus * modulus * variances[k] + r.second_variance;
+        const double weight = evidence * r.weight;
+        all.add(weight / variance, r.second - modulus * driven[k].slip, modulus * driven[k].by_resistance,
+                weight * std::log(variance));
       }
-    return log;
+    return all.marginal(0.0);
   }
 
-  // Part of the strength at the reference slip that the shear modulus of a hypothesis makes.
-  double shapeOf(const Hypothesis& one, const Hypotheses& h) const {
-    const Curve& fresh = curves.begin()->second;
-    return one.of_shape
-               ? fresh.pullAt(kReferenceSlip / h.sensors[one.sensor].scale) - fresh.pullAt(kReferenceSlip)
-               : 0.0;
-  }
-
-  // One hypothesis with one departure and variation: its departure, log-likelihood and offsets.
-  struct Term {
-    std::size_t hypothesis;
-    double departure, log, offset, changed;
-  };
-  static Term termOf(const Hypothesis& one, const std::vector<Parts>& until) {
+  // Adds one hypothesis with one departure, node of the resistance and variation.
+  void add(Sums& sums, const Hypothesis& one, const std::vector<Parts>& until, Quadratic all, double log,
+           double departure, std::size_t node, double modulus) const {
     const auto from = static_cast<std::size_t>(one.from);
-    const Parabola& first = until[one.sensor][from];
-    Term term{0, 0.0, first.marginal(one.offset_std), first.offset(one.offset_std), 0.0};
-    if (one.from == kParts) return term;
-    const Parabola &all = until[one.after][kParts], &before = until[one.after][from];
-    const Parabola rest{all.a - before.a, all.f - before.f, all.q - before.q};
-    const double std = one.after == one.sensor ? one.offset_std : 0.3;
-    term.log += rest.marginal(std);
-    term.changed = rest.offset(std);
-    return term;
+    const Residuals &first = until[one.sensor][from],
+                    rest = until[one.after][kParts] - until[one.after][from];
+    const double std = one.after == one.sensor ? one.offset_std : kUnrelatedOffset;
+    all += first.marginal(one.offset_std);
+    if (one.from < kParts) all += rest.marginal(std);
+    const double resistance = all.mean(kNodeStd);
+    // A shear modulus of m times that of the class changes the pull at the reference slip, too.
+    sums.add(log + all.integral(kNodeStd),
+             fresh[node].pullAt(kReferenceSlip / modulus, departure) -
+                 model.reference(index, false).drawbar_pull_over_load,
+             departure, kResistances[node] * kNodesStd + resistance, first.offset(one.offset_std, resistance),
+             rest.offset(std, resistance));
   }
 
-  Table table(const std::vector<double>& departures, const Hypotheses& h) const {
-    std::vector<Term> terms;
-    Table out{.sums = std::vector<Sums>(h.all.size())};
-    std::vector<double> slips(readings.size());
-    for (const double departure : departures) {
-      for (std::size_t k = 0; k < readings.size(); ++k)
-        slips[k] = readings[k].curve->slipOn(readings[k].gradient, departure);
-      for (std::size_t t = 0; t < kVariations.size(); ++t) {
-        std::vector<double> by_second;
-        std::vector<Parts> until;
-        for (const SlipSensor& sensor : h.sensors) {
-          by_second.push_back(
-              bySecond(sensor.kind == SlipSensor::Kind::Linear ? sensor.scale : 1.0, slips, t));
-          until.push_back(partsOf(sensor, slips, t));
-        }
-        const double by_class = bySecond(1.0, slips, t), of_prior = logPrior(departure / mean_std);
-        for (std::size_t i = 0; i < h.all.size(); ++i) {
-          Term& term = terms.emplace_back(termOf(h.all[i], until));
-          term.hypothesis = i;
-          term.departure = departure + shapeOf(h.all[i], h);
-          term.log += of_prior + (h.all[i].of_shape ? by_second[h.all[i].sensor] : by_class);
-          out.greatest = std::max(out.greatest, term.log);
+  // The coarse table has every second node and variation, and readings of less weight, so that its grid meets the
+  // likelihood.
+  Table table(const std::vector<double>& departures, const Hypotheses& h, bool coarse) const {
+    const std::size_t step = coarse ? 2 : 1;
+    const double evidence = coarse ? kCoarseEvidence : kEvidence;
+    Table out(h.all.size());
+    std::vector<Curve::Driven> driven(readings.size());
+    std::vector<double> variances(readings.size());
+    for (const double departure : departures)
+      for (std::size_t node = 0; node < kResistances.size(); node += step) {
+        for (std::size_t k = 0; k < readings.size(); ++k)
+          driven[k] = (*readings[k].curves)[node].on(readings[k].gradient, departure);
+        const double of_prior =
+            logPrior(departure / ground.mean_std) - 0.5 * kResistances[node] * kResistances[node];
+        for (std::size_t t = 0; t < kVariations.size(); t += step) {
+          for (std::size_t k = 0; k < readings.size(); ++k) variances[k] = variance(driven[k], t);
+          std::map<double, Quadratic> by_second;  // by modulus
+          std::vector<Parts> until;
+          for (const Sensor& sensor : h.sensors) {
+            if (!by_second.contains(sensor.modulus))
+              by_second.emplace(sensor.modulus, bySecond(sensor.modulus, driven, variances, evidence));
+            until.push_back(partsOf(sensor, driven, variances, t, evidence));
+          }
+          for (std::size_t i = 0; i < h.all.size(); ++i) {
+            const double modulus = h.sensors[h.all[i].sensor].modulus;
+            add(out[i], h.all[i], until, by_second[modulus], of_prior, departure, node, modulus);
+          }
         }
       }
-    }
-    for (const Term& term : terms) {
-      const double w = std::exp(term.log - out.greatest);
-      Sums& sums = out.sums[term.hypothesis];
-      sums.weight += w;
-      sums.first += w * term.departure;
-      sums.second += w * term.departure * term.departure;
-      sums.offset += w * term.offset;
-      sums.changed += w * term.changed;
-    }
     return out;
   }
 };
@@ -301,7 +412,7 @@ std::vector<double> weighed(const std::vector<OfClass::Table>& of_classes, const
   for (std::size_t i = 0; i < h.all.size(); ++i) {
     weights.push_back(std::log(h.all[i].prior));
     for (const OfClass::Table& table : of_classes)
-      weights.back() += std::log(std::max(table.sums[i].weight, 1e-300));
+      weights.back() += table[i].greatest + std::log(table[i].weight);
   }
   const double greatest = *std::ranges::max_element(weights);
   double sum = 0.0;
@@ -312,14 +423,16 @@ std::vector<double> weighed(const std::vector<OfClass::Table>& of_classes, const
 
 // Mean and standard deviation of the departure over the hypotheses that `counts` accepts.
 template <typename Counts>
-Estimate departureBy(const std::vector<double>& weights, const OfClass::Table& table, const Counts& counts) {
+Estimate departureBy(const std::vector<double>& weights, const OfClass::Table& table, const Counts& counts,
+                     double OfClass::Sums::*first = &OfClass::Sums::first,
+                     double OfClass::Sums::*square = &OfClass::Sums::second) {
   double all = 0.0, mean = 0.0, second = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    const OfClass::Sums& sums = table.sums[i];
+    const OfClass::Sums& sums = table[i];
     if (!(sums.weight > 0.0) || !counts(i)) continue;
     all += weights[i];
-    mean += weights[i] * sums.first / sums.weight;
-    second += weights[i] * sums.second / sums.weight;
+    mean += weights[i] * sums.*first / sums.weight;
+    second += weights[i] * sums.*square / sums.weight;
   }
   mean /= all;
   return {mean, std::sqrt(std::max(second / all - mean * mean, 1e-6))};
@@ -333,19 +446,18 @@ std::vector<double> grid(double low, double high, int points) {
 
 // Readings of one class, by wheels in ruts, part and gradient.
 template <typename SumsOfMoments>
-OfClass gathered(const GroundModel& model, const SumsOfMoments& sums, std::size_t index, double second_std,
+OfClass gathered(const GroundModel& model, const SumsOfMoments& sums, int index, double second_std,
                  const DriveEstimate& out) {
   struct Weighed {
     double weight = 0.0, gradient = 0.0, slip = 0.0, squares = 0.0, second = 0.0, seconds = 0.0;
   };
   std::map<std::pair<int, int>, double> of_square;
   for (const auto& [key, sum] : sums)
-    if (std::get<0>(key) == static_cast<int>(index))
-      of_square[{std::get<4>(key), std::get<5>(key)}] += sum.count;
+    if (std::get<0>(key) == index) of_square[{std::get<4>(key), std::get<5>(key)}] += sum.count;
   std::map<std::tuple<int, int, int, int>, Weighed> bins;
   for (const auto& [key, sum] : sums) {
     const auto& [of_class, rutted, wheels, chunk, x, y, step] = key;
-    if (of_class != static_cast<int>(index)) continue;
+    if (of_class != index) continue;
     const double weight = sum.count / of_square[{x, y}], slip = sum.slip / sum.count;
     const double gradient = out.gradient(sum.gradient / sum.count);
     Weighed& w = bins[{rutted, wheels, out.partOf(chunk * kChunk),
@@ -358,10 +470,10 @@ OfClass gathered(const GroundModel& model, const SumsOfMoments& sums, std::size_
     w.seconds += weight;
     w.second += weight * sum.second / sum.seconds;
   }
-  OfClass one{.index = index, .mean_std = model.parts().classes[index].mean_std};
+  OfClass one(model, index);
   for (const auto& [key, w] : bins) {
     const double slip = w.slip / w.weight;
-    one.add(model, std::get<0>(key), std::get<1>(key),
+    one.add(std::get<0>(key), std::get<1>(key),
             {.part = std::get<2>(key),
              .weight = w.weight,
              .gradient = w.gradient / w.weight,
@@ -385,7 +497,7 @@ std::size_t nameSensor(const Hypotheses& h, const std::vector<double>& weights, 
   std::size_t best = 0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     kinds[h.all[i].kind] += weights[i];
-    if (!h.sensors[h.all[i].sensor].informs()) continue;
+    if (!h.sensors[h.all[i].sensor].sensor.informs()) continue;
     out.informing += weights[i];
     if (weights[i] > weights[best]) best = i;
   }
@@ -395,22 +507,27 @@ std::size_t nameSensor(const Hypotheses& h, const std::vector<double>& weights, 
       out.hypothesis = kind;
     }
   out.uninforming = kinds["of class"] > kinds["unrelated"] ? "of class" : "unrelated";
-  out.sensor = h.sensors[h.all[best].sensor];
+  out.sensor = h.sensors[h.all[best].sensor].sensor;
   out.changed_from = h.all[best].from;
-  out.changed_informs = h.all[best].from == kParts || h.sensors[h.all[best].after].informs();
+  out.changed_informs = h.all[best].from == kParts || h.sensors[h.all[best].after].sensor.informs();
   return best;
 }
 
 // Strength of one class over the hypotheses.
 DriveEstimate::OfClass strengthBy(const Hypotheses& h, const std::vector<double>& weights,
-                                  const OfClass::Table& table, double mean_std) {
+                                  const OfClass::Table& table, const OfClass& of) {
   const auto isSound = [&](std::size_t i) { return std::string_view(h.all[i].kind) == "sound"; };
-  const auto informs = [&](std::size_t i) { return h.sensors[h.all[i].sensor].informs(); };
-  const Estimate read = departureBy(weights, table, informs);
-  const double q2 = kPriorVariance * mean_std * mean_std,
+  const auto informs = [&](std::size_t i) { return h.sensors[h.all[i].sensor].sensor.informs(); };
+  const double rut2 = std::pow(of.inRut() * of.ground.rut_std, 2);
+  const auto by = [&](const auto& counts) {
+    const Estimate mean = departureBy(weights, table, counts);
+    return Estimate{mean.value, std::sqrt(mean.std * mean.std + rut2)};
+  };
+  const Estimate read = by(informs);
+  const double q2 = kPriorVariance * of.ground.mean_std * of.ground.mean_std,
                left = std::max(1.0 / (read.std * read.std) - 1.0 / q2, 0.01 / q2);
-  return {.departure = departureBy(weights, table, anyHypothesis),
-          .if_sound = departureBy(weights, table, isSound),
+  return {.departure = by(anyHypothesis),
+          .if_sound = by(isSound),
           .read = read.value / (read.std * read.std * left),
           .shared_std = 1.0 / std::sqrt(left)};
 }
@@ -433,6 +550,14 @@ double SlipSensor::read(double slip, double gradient, double of_class) const noe
       break;
   }
   return 0.0;
+}
+
+double SlipSensor::gain(double slip, double gradient) const noexcept {
+  if (!informs()) return 0.0;
+  return (kind == Kind::Knee && slip > knee) || kind == Kind::Linear ||
+                 (kind == Kind::Uphill && gradient > 0.0)
+             ? scale
+             : 1.0;
 }
 
 double SlipSensor::slipOf(double read, double gradient) const noexcept {
@@ -533,7 +658,6 @@ void DrivePosterior::fitSlopes(DriveEstimate& out) const {
 }
 
 DriveEstimate DrivePosterior::fitted() const {
-  static const Hypotheses h = hypotheses();
   DriveEstimate out{.moments = moments_};
   for (const GroundClass& ground : model_.parts().classes)
     out.classes.push_back({.departure = {0.0, ground.mean_std},
@@ -542,33 +666,50 @@ DriveEstimate DrivePosterior::fitted() const {
   fitSlopes(out);
   out.twice = seconds_ > 0.5 * static_cast<double>(moments_) && second_std_ < kMostSecondStd;
   std::vector<OfClass> driven;
-  for (std::size_t c = 0; c < out.classes.size(); ++c)
-    if (OfClass one = gathered(model_, sums_, c, second_std_, out); !one.readings.empty())
-      driven.push_back(std::move(one));
+  double modulus_std = 0.0;
+  for (int c = 0; c < static_cast<int>(out.classes.size()); ++c)
+    if (std::ranges::any_of(sums_, [&](const auto& sum) { return std::get<0>(sum.first) == c; })) {
+      driven.push_back(gathered(model_, sums_, c, second_std_, out));
+      modulus_std = std::max(modulus_std, driven.back().ground.modulus_std);
+    }
   if (driven.empty()) return out;
+  Hypotheses h = hypotheses(modulus_std);
   std::vector<OfClass::Table> tables;
   std::vector<double> weights;
   // The second grid lies around the posterior by the first.
   for (const bool fine : {false, true}) {
     std::vector<OfClass::Table> next;
+    std::vector<Estimate> around;
+    for (std::size_t k = 0; k < driven.size(); ++k)
+      around.push_back(
+          fine ? departureBy(weights, tables[k], anyHypothesis, &OfClass::Sums::at, &OfClass::Sums::at2)
+               : Estimate{0.0, 1.6 * driven[k].ground.mean_std});
+    if (fine) h = h.probable(weights);
     for (std::size_t k = 0; k < driven.size(); ++k) {
-      const double q = driven[k].mean_std;
-      const Estimate at = fine ? departureBy(weights, tables[k], anyHypothesis) : Estimate{0.0, 1.6 * q};
-      const double reach = 5.0 * std::max(at.std, 0.15 * q);
-      next.push_back(driven[k].table(grid(at.value - reach, at.value + reach, fine ? 41 : 49), h));
+      const double reach = 5.0 * std::max(around[k].std, 0.15 * driven[k].ground.mean_std);
+      next.push_back(
+          driven[k].table(grid(around[k].value - reach, around[k].value + reach, fine ? 41 : 33), h, !fine));
     }
     tables = std::move(next);
     weights = weighed(tables, h);
   }
   const std::size_t best = nameSensor(h, weights, out);
+  std::vector<GroundClass> found = model_.parts().classes;
   for (std::size_t k = 0; k < driven.size(); ++k) {
-    DriveEstimate::OfClass& of = out.classes[driven[k].index];
-    of = strengthBy(h, weights, tables[k], driven[k].mean_std);
-    const OfClass::Sums& sums = tables[k].sums[best];
-    of.at = sums.first / sums.weight - driven[k].shapeOf(h.all[best], h);
+    DriveEstimate::OfClass& of = out.classes[static_cast<std::size_t>(driven[k].index)];
+    of = strengthBy(h, weights, tables[k], driven[k]);
+    const OfClass::Sums& sums = tables[k][best];
+    of.at = sums.at / sums.weight;
+    found[static_cast<std::size_t>(driven[k].index)] =
+        model_.withResistance(driven[k].index, std::round(10.0 * sums.resistance / sums.weight) / 10.0)
+            ->parts()
+            .classes[0];
     out.offset += sums.offset / sums.weight / static_cast<double>(driven.size());
     out.changed_offset += sums.changed / sums.weight / static_cast<double>(driven.size());
   }
+  GroundModel::Parts parts = model_.parts();
+  parts.classes = std::move(found);
+  out.ground = std::make_shared<const GroundModel>(std::move(parts));
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -25,10 +26,8 @@ struct SlipSensor {
   double read(double slip, double gradient, double of_class) const noexcept;
   /// Returns the slip at which a gradient gives a reading; meaningless for OfClass and Unrelated.
   double slipOf(double read, double gradient) const noexcept;
-  /// Returns the change of the slip for a change of the reading.
-  double amplification(double slip, double gradient) const noexcept {
-    return (slipOf(read(slip, gradient, 0.0) + 0.01, gradient) - slip) / 0.01;
-  }
+  /// Returns the change of the reading for a change of the slip.
+  double gain(double slip, double gradient) const noexcept;
   /// Returns true if the reading depends on the ground.
   bool informs() const noexcept { return kind != Kind::OfClass && kind != Kind::Unrelated; }
 };
@@ -50,6 +49,8 @@ struct DriveEstimate {
     double at = 0.0;  ///< departure for the sensor `sensor`
   };
   std::vector<OfClass> classes;
+  /// The classes with the resistances that were found for `sensor`; null without a moment.
+  std::shared_ptr<const GroundModel> ground;
   SlipSensor sensor;            ///< most probable sensor whose slip depends on the ground
   double offset = 0.0;          ///< its reading at zero slip [-]
   int changed_from = kParts;    ///< part of the drive from which the sensor changed; kParts: none
@@ -81,19 +82,22 @@ struct DriveEstimate {
   double gradient(double measured) const noexcept { return (measured - slope_offset) / slope_scale; }
 };
 
-/// Bayes estimate of the sensors of a drive and of the strength of its ground. Let wheels on ground of a class
-/// have the pull P(i) at slip i, with the thrust H(i), both over load, and f = H(i)/H(0.5). Ground that departs
-/// from the class by D at the reference slip 0.5 has, on a slope of gradient g, the slip i(g, D) with
-///   P(i) + D f(i) = g                                                                                   (B2)
-/// A sensor (SlipSensor) with offset b reads b + read(i) + e, e normal with the variance
-///   (t^2 p^2 + 0.02^2) (f/P')^2 + 0.015^2 + (0.01/P')^2                                                 (B3)
-/// where p is the standard deviation of the class between places and t its share in this drive. Each kind of
-/// sensor is one hypothesis with a prior probability; for each, D (normal, mean_std), t and the sensor's
-/// parameters are summed over a grid, and b is integrated. Classes share the sensor. A square with sides of 2/3
-/// of the correlation length counts as one reading. A second slip, measured independently, is a second reading
-/// with an error of 0.03 and of the scatter of the positions. A linear sensor of scale s near 1 is not
-/// distinguished from ground whose shear modulus is s times that of its class: for the sound sensor, D includes
-/// P(0.5/s) - P(0.5).
+/// Bayes estimate of the sensors of a drive and of the strength of its ground. Soils of a class differ in
+/// strength, in resistance and in shear modulus. Let wheels on the soil of a class with the resistance R (in
+/// standard deviations, by its sinkage exponent) have the pull P_R(i) at slip i and the thrust H_R(i), both over
+/// load, and h_R = H_R(i)/H_R(0.5) on fresh ground. Ground that departs from the class by D at the reference slip
+/// 0.5 has, on a slope of gradient g, the slip m i, m the shear modulus over that of the class, with
+///   P_R(i) + (D - P_R(0.5) + P_0(0.5)) h_R(i) = g                                                       (B2)
+/// P and H are means over the wheels of the rover, of which some run in ruts. A sensor (SlipSensor) with offset b
+/// reads b + read(m i) + a u + e1, a second slip m i + u + e2, where a is the change of the reading for a change of
+/// the slip, and
+///   var u = ((t^2 p^2 + 0.01^2) h^2 + 0.01^2) (di/dg)^2, var e1 = 0.015^2, var e2 = 0.03^2 + scatter^2   (B3)
+/// p is the standard deviation of the class between places, t its share in this drive, u the departure of a place,
+/// which both slips have. Each kind of sensor is one hypothesis with a prior probability; for each, D (normal,
+/// mean_std), m (log-normal, modulus_std), five values of R, t and the sensor's parameters are summed over a grid;
+/// b and R about these values (normal, linear in the slip) are integrated. Classes share the sensor and m. A square
+/// with sides of 2/3 of the correlation length counts as one reading. The pull that soils of a class have in ruts
+/// in addition (rut_std) is not seen in the slip; it adds to the standard deviation.
 ///
 /// Measured gradients are compared with those of the map, which gives the offset and scale of the slope sensor,
 /// and the part of the drive from which they are unrelated: there the pose is displaced. All numbers ours.

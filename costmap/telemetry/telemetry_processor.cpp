@@ -441,13 +441,18 @@ void TelemetryProcessor::correct(const Sound& sound, std::size_t number, const D
   std::vector<double> slips, departures;
   for (const ClassReading& one : read) slips.push_back(one.reading.slip);
   const double slip = median(std::move(slips));
-  for (const DriveEstimate::OfClass& one : drive.classes) departures.push_back(one.at);
+  if (!drive.ground) return;
+  for (std::size_t c = 0; c < drive.classes.size(); ++c) {
+    const auto index = static_cast<int>(c);
+    departures.push_back(drive.classes[c].at + map_.model().prior(index).pull.value -
+                         drive.ground->prior(index).pull.value);
+  }
   for (ClassReading& one : read) {
     if (verdict.without_torque) one = withoutTorque(one);
     one.reading.gradient = drive.gradient(one.reading.gradient);
     one.reading.slip = std::clamp(drive.slip(number, slip, one.reading.gradient), -1.0, 1.0);
   }
-  const auto corrected = observer_.observe(read, departures);
+  const auto corrected = WheelObserver(*drive.ground).observe(read, departures);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (!seen[i] || !corrected[i]) continue;
     const auto index = static_cast<std::size_t>(read[i].class_index);
@@ -461,8 +466,8 @@ void TelemetryProcessor::correct(const Sound& sound, std::size_t number, const D
     }
     seen[i] = corrected[i];
     seen[i]->pull.value += (verified ? of.read : of.departure.value) - of.at;
-    seen[i]->pull.std *=
-        std::max(drive.sensor.amplification(read[i].reading.slip, read[i].reading.gradient), 1.0);
+    seen[i]->pull.std /=
+        std::clamp(drive.sensor.gain(read[i].reading.slip, read[i].reading.gradient), 0.1, 1.0);
     seen[i]->shared_std = of.shared_std;
     if (verified) seen[i]->trust = drive.twice ? Trust::Twice : Trust::Once;
     seen[i]->sinkage_verified = verified;
