@@ -196,21 +196,12 @@ TravelState TabulatedStates::at(int row, int bin) const {
   return states_[static_cast<std::size_t>(std::min(row, last) * TravelCurve::kBins + bin)];
 }
 
-TravelCurve TabulatedStates::curve(const CostWeights& weights) const {
-  const auto term = [](double weight, float value) {  // a quantity without a weight may be unknown
-    return weight > 0.0 ? weight * static_cast<double>(value) : 0.0;
-  };
-  std::vector<float> costs;
+std::vector<TravelStates::Terms> TabulatedStates::terms() const {
+  std::vector<Terms> terms;
   for (const TravelState& s : states_)
-    costs.push_back(s.refusal == Refusal::None ? static_cast<float>(term(weights.energy, s.energy_J_per_m) +
-                                                                    term(weights.time_W, s.time_s_per_m) +
-                                                                    term(weights.risk_J, s.risk_per_m))
-                                               : std::numeric_limits<float>::infinity());
-  TravelCurve curve;
-  std::copy_n(costs.begin(), TravelCurve::kBins, curve.cost_J_per_m.begin());
-  if (costs.size() > TravelCurve::kBins)
-    curve.crossing = std::make_shared<const std::vector<float>>(std::move(costs));
-  return curve;
+    terms.push_back({s.refusal == Refusal::None ? s.energy_J_per_m : std::numeric_limits<float>::infinity(),
+                     s.time_s_per_m, s.risk_per_m});
+  return terms;
 }
 
 TravelForecast TabulatedStates::forecast(const terramech::Gradient& gradient) const {
