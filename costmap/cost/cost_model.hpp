@@ -279,9 +279,11 @@ struct GroundCost {
 /// Energy and time per horizontal metre on ground whose strength departs from its mean by deviate(k) standard
 /// deviations. A motion that fails there has the values of the least strength at which it does not.
 struct TravelForecast {
-  static constexpr int kDeviates = 9;
-  static constexpr double deviate(int k) noexcept { return -2.0 + 0.5 * k; }
+  static constexpr int kDeviates = 15;
+  static constexpr double deviate(int k) noexcept { return -3.5 + 0.5 * k; }
   std::array<float, kDeviates> energy_J_per_m{}, time_s_per_m{};
+  /// Energy and time with all axles on fresh ground, over those with later axles in ruts.
+  double fresh_energy = 0.0, fresh_time = 0.0;
   double fails_below = -10.0;  ///< departure below which the motion fails, in standard deviations
 };
 
@@ -294,6 +296,8 @@ struct SoilUncertainty {
   double entrapment = 1.0;
   /// Fraction of the variance of the drawbar pull that all places of a class share, by class index [-].
   std::vector<double> shared{};
+  /// Soil::rut_stiffness with its standard deviation, by class index [-].
+  std::vector<terramech::Estimate> ruts{};
 };
 
 /// Cost function of a map, shared by planners, route checks and reports. It combines the cost curves with
@@ -387,6 +391,9 @@ struct StrengthColumn {
   /// the law of ruts is uncertain and a wheel may leave its rut.
   float required = 0.0F;
   float margin_rad = 0.0F;  ///< stability margin on ground of the class; NaN: not known
+  /// Energy and time with all axles on fresh ground over those in ruts, on ground of the class or, where that
+  /// fails, on the weakest ground that holds.
+  float fresh_energy = 1.0F, fresh_time = 1.0F;
   /// Energy [J/m] and time [s/m] along the surface, slip, sinkage [m] and torque [N m] of the wheel with the
   /// greatest value, slip angle [rad] (negative where the ground rises to the left), side force over load.
   std::array<std::array<float, kStrengths>, kQuantities> entries{};

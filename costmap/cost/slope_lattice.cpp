@@ -31,6 +31,12 @@ StrengthColumn solvedOnSide(const Standings& rover, const Gradient& gradient, do
   column.least = static_cast<float>(least);
   // Wheels in ruts pull more uphill and brake less downhill.
   column.required = static_cast<float>(std::max(least, rover.fresh.leastStrength(gradient, least)));
+  const double strength = std::max(1.0, static_cast<double>(column.required));
+  const SlopeState ruts = rover.in_ruts.at(gradient, strength), fresh = rover.fresh.at(gradient, strength);
+  if (ruts.energy_J_per_m > 0.0 && fresh.speed_mps > 0.0) {
+    column.fresh_energy = static_cast<float>(fresh.energy_J_per_m / ruts.energy_J_per_m);
+    column.fresh_time = static_cast<float>(ruts.speed_mps / fresh.speed_mps);
+  }
   // The body turns as on ground of the class or, where that fails, as on the weakest ground that holds.
   column.margin_rad =
       static_cast<float>(rover.in_ruts.at(gradient, std::max(1.0, least)).stability_margin_rad);
@@ -69,6 +75,8 @@ StrengthColumn mixed(const StrengthColumn& a, const StrengthColumn& b, float sha
   out.least += share * (b.least - a.least);
   out.required += share * (b.required - a.required);
   out.margin_rad += share * (b.margin_rad - a.margin_rad);
+  out.fresh_energy += share * (b.fresh_energy - a.fresh_energy);
+  out.fresh_time += share * (b.fresh_time - a.fresh_time);
   for (std::size_t q = 0; q < out.entries.size(); ++q)
     for (std::size_t k = 0; k < out.entries[q].size(); ++k)
       out.entries[q][k] += share * (b.entries[q][k] - a.entries[q][k]);

@@ -216,6 +216,7 @@ SoilUncertainty CostCurveTable::uncertainty() const {
   for (std::size_t i = 0; i < classes(); ++i) {
     const double all = priors_[i].pull.std, apart = parts.classes[i].pull_std;
     uncertainty.shared.push_back(all > apart ? 1.0 - apart * apart / (all * all) : 0.0);
+    uncertainty.ruts.push_back({parts.classes[i].soil.rut_stiffness, parts.classes[i].rut_stiffness_std});
   }
   return uncertainty;
 }

@@ -265,6 +265,8 @@ TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const
     const double reserve = of.strength.value - static_cast<double>(column.least);
     const double scale = weight * std::hypot(1.0, TravelCurve::gradient(bin));
     out.fails_below -= weight * reserve / std::max(of.strength.std, 1e-6);
+    out.fresh_energy += weight * static_cast<double>(column.fresh_energy);
+    out.fresh_time += weight * static_cast<double>(column.fresh_time);
     for (int d = 0; d < TravelForecast::kDeviates; ++d) {
       const double excess = reserve + TravelForecast::deviate(d) * of.strength.std;
       const auto k = static_cast<std::size_t>(d);
