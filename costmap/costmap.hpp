@@ -156,7 +156,7 @@ class MapCosts {
   std::shared_ptr<const CostGrid> published() const noexcept;
 
   /// Returns the estimated strength of ground from which the published cost of a cell follows, after
-  /// WheelSwath combined the ground under all wheels and after quantisation (GroundKind); nullopt for blocked
+  /// WheelSwath combined the ground under all wheels and after rounding (rounded()); nullopt for blocked
   /// and unknown cells.
   std::optional<GroundBelief> ground(maps::Cell cell) const;
   /// Returns the published category of a cell; nullopt for blocked and unknown cells.

@@ -175,9 +175,10 @@ TravelCost::TravelCost(const Limits& limits, std::vector<TravelCurve> curves)
 }
 
 TravelCost::TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds,
-                       SoilUncertainty uncertainty)
+                       SoilUncertainty uncertainty, const CostWeights& weights)
     : TravelCost(limits, curvesOf(grounds)) {
   uncertainty_ = std::move(uncertainty);
+  weights_ = weights;
   for (std::size_t i = 0; i < grounds.size(); ++i) {
     states_[i] = grounds[i].states;
     turns_[i] = grounds[i].turns;
@@ -222,11 +223,6 @@ TravelState TravelCost::detail(CellCode cell, Direction heading) const noexcept 
   if (std::abs(d.along) > limits_.max_along || !(place >= 0.0 && place < TravelCurve::kLastPlace))
     state.refusal = limits_.stated ? Refusal::Stated : Refusal::Pitch;
   return state;
-}
-
-SlopeHold TravelCost::hold(CellCode cell, Direction heading) const noexcept {
-  const TravelStates* states = statesOf(cell);
-  return states ? states->hold(gradientOf(cell, heading)) : SlopeHold{};
 }
 
 TravelForecast TravelCost::forecast(CellCode cell, Direction heading) const noexcept {
@@ -280,24 +276,52 @@ TravelState worse(const TravelState& a, const TravelState& b) noexcept {
           .risk_per_m = std::max(a.risk_per_m, b.risk_per_m),
           .weak = std::max(a.weak, b.weak),
           .pull_margin = std::min(a.pull_margin, b.pull_margin),
+          .slip_angle_rad = a.slip_angle_rad,
+          .side_force_over_load = a.side_force_over_load,
+          .stability_margin_rad = a.stability_margin_rad,
           .category = std::max(a.category, b.category),
           .refusal = a.refusal != Refusal::None ? a.refusal : b.refusal,
           .class_index = a.class_index};
 }
 
 TravelState TravelStates::state(const terramech::Gradient& gradient) const {
+  constexpr std::array kNumbers{&TravelState::slip,
+                                &TravelState::sinkage_m,
+                                &TravelState::torque_Nm,
+                                &TravelState::energy_J_per_m,
+                                &TravelState::time_s_per_m,
+                                &TravelState::risk_per_m,
+                                &TravelState::weak,
+                                &TravelState::pull_margin,
+                                &TravelState::slip_angle_rad,
+                                &TravelState::side_force_over_load,
+                                &TravelState::stability_margin_rad};
   std::optional<TravelState> out;
   TravelCurve::forNodesAround(gradient, [&](int row, int bin, double weight) {
     const TravelState node = at(row, bin);
-    if (!out) out = {.category = node.category, .refusal = node.refusal, .class_index = node.class_index};
-    for (const auto number : {&TravelState::slip, &TravelState::sinkage_m, &TravelState::torque_Nm,
-                              &TravelState::energy_J_per_m, &TravelState::time_s_per_m,
-                              &TravelState::risk_per_m, &TravelState::weak, &TravelState::pull_margin})
-      (*out).*number += static_cast<float>(weight) * node.*number;
+    if (!out) {
+      out = node;
+      for (const auto number : kNumbers) (*out).*number = 0.0F;
+    }
+    for (const auto number : kNumbers) (*out).*number += static_cast<float>(weight) * node.*number;
     out->category = std::max(out->category, node.category);
     if (out->refusal == Refusal::None || node.refusal == Refusal::Tips) out->refusal = node.refusal;
   });
+  out->slip_angle_rad = std::copysign(out->slip_angle_rad, static_cast<float>(0.0 - gradient.across));
   return *out;
+}
+
+// A quantity without a weight may be unknown.
+TravelCurve TravelStates::curve(const CostWeights& weights) const {
+  const std::array<double, 3> weight{weights.energy, weights.time_W, weights.risk_J};
+  std::vector<float> costs;
+  for (const Terms& terms : this->terms()) {
+    double cost = terms[0] < std::numeric_limits<float>::infinity() ? 0.0 : kInfinity;
+    for (std::size_t k = 0; k < terms.size(); ++k)
+      if (weight[k] > 0.0) cost += weight[k] * static_cast<double>(terms[k]);
+    costs.push_back(static_cast<float>(cost));
+  }
+  return TravelCurve(std::move(costs));
 }
 
 }  // namespace talus::costmap

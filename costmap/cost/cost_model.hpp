@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@
 #include <talus/maps/maps.hpp>
 #include <talus/terramech/mobility/category.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
+
+namespace talus::terramech {
+class RoverStance;
+}
 
 namespace talus::costmap {
 
@@ -91,6 +96,12 @@ struct TravelState {
   float weak = 0.0F;  ///< probability that the available pull is below the required pull, 0 to 1 [-]
   /// Available drawbar pull over load DP/W at the reference slip 0.5 minus the required DP/W [-].
   float pull_margin = 0.0F;
+  /// Angle from the wheel planes to the direction of travel, left positive: negative where the ground rises to
+  /// the left, because the wheels are turned uphill. NaN without an equilibrium, as the next two.
+  float slip_angle_rad = std::numeric_limits<float>::quiet_NaN();
+  float side_force_over_load = std::numeric_limits<float>::quiet_NaN();  ///< greatest |F|/N of a wheel [-]
+  /// Additional tilt until the rover tips; NaN also if the height of the centre of mass is not known.
+  float stability_margin_rad = std::numeric_limits<float>::quiet_NaN();
   /// Category of the ground at this gradient along the heading.
   terramech::Category category = terramech::Category::Unknown;
   Refusal refusal = Refusal::None;
@@ -100,14 +111,6 @@ struct TravelState {
 /// Returns the less favourable value of each quantity of `a` and `b`. The refusal is that of `a`, or that of
 /// `b` if `a` is allowed.
 TravelState worse(const TravelState& a, const TravelState& b) noexcept;
-
-}  // namespace talus::costmap
-
-namespace talus::terramech {
-class RoverStance;
-}
-
-namespace talus::costmap {
 
 /// A heading (horizontal direction of travel) as a unit vector in the map frame (x east, y north).
 struct Direction {
@@ -188,12 +191,13 @@ struct TravelCurve {
   static constexpr double kSame = 1e-9;  ///< tolerance for positions on a node [bins or rows]
   /// Upper bound of positions along the heading, exclusive [bins].
   static constexpr double kLastPlace = kBins - 1 - kSame;
-  /// Row 0, i.e. costs without a gradient across: energy + weighted time + weighted risk [J/m].
-  std::array<float, kBins> cost_J_per_m;
-  /// Costs of all rows, row 0 first; gradients across beyond the last row use the last row. Null: a gradient
-  /// across adds no cost. Costs must not decrease from row to row in any bin, because the lower bounds of the
-  /// planners rely on this.
-  std::shared_ptr<const std::vector<float>> crossing{};
+  /// Costs of all nodes, energy + weighted time + weighted risk [J/m]: kBins for each row, row 0 (no gradient
+  /// across) first; gradients across beyond the last row use the last row. Costs must not decrease from row to
+  /// row in any bin, because the lower bounds of the planners rely on this.
+  std::shared_ptr<const std::vector<float>> costs;
+
+  explicit TravelCurve(std::vector<float> costs_J_per_m)
+      : costs(std::make_shared<const std::vector<float>>(std::move(costs_J_per_m))) {}
 
   /// Returns the bin of the node nearest to a gradient along the heading; outside 0..kBins-1 for a gradient
   /// outside the table.
@@ -232,10 +236,10 @@ struct TravelCurve {
       }
   }
 
-  /// rows() returns the costs [J/m] of all nodes, row by row, with kBins costs per row. lastRow() returns the
-  /// index of the last row.
-  const float* rows() const noexcept { return crossing ? crossing->data() : cost_J_per_m.data(); }
-  int lastRow() const noexcept { return crossing ? static_cast<int>(crossing->size()) / kBins - 1 : 0; }
+  /// rows() returns the costs of all nodes, level() those of row 0. lastRow() returns the index of the last row.
+  const float* rows() const noexcept { return costs->data(); }
+  std::span<const float> level() const noexcept { return {rows(), kBins}; }
+  int lastRow() const noexcept { return static_cast<int>(costs->size()) / kBins - 1; }
 
   /// Returns the cost [J/m] at the gradients `along` and `across` the heading, both |g| <= 2; infinite
   /// outside the table.
@@ -265,51 +269,21 @@ struct CostWeights {
   double risk_J = 1e7;  ///< cost of the loss of the rover, >= 0 [J]
 };
 
-/// Cost of a turn by one radian, or of a change of direction, in addition to the cost of the path length.
-struct TurnCost {
-  double cost_J = 0.0;    ///< weighted cost by the cost function, >= 0
-  double energy_J = 0.0;  ///< energy of the turn, >= 0
-  double time_s = 0.0;    ///< >= 0
-};
-
-/// Costs of a turn by one radian on ground of one estimated strength, for three ways to turn.
-struct TurnCosts {
-  /// Turn while driving on an arc.
-  TurnCost on_arc;
-  /// Turn on the spot.
-  TurnCost in_place;
-  /// Change of direction at a vertex of a polyline: in place if the rover can turn in place, otherwise on an
-  /// arc.
-  TurnCost at_vertex;
-};
-
 /// Cost curve of ground of one estimated strength, and the travel states from which the costs follow.
 struct GroundCost {
   TravelCurve curve;
   std::shared_ptr<const TravelStates> states;  ///< may be null if details are not needed (tests)
-  TurnCosts turns{};  ///< costs of a turn by one radian on level ground; zeros if turning is free (tests)
-};
-
-/// Slip angle, side force and stability margin of a rover on a slope, on the soil of the terrain class.
-/// Values are NaN on a slope without an equilibrium.
-struct SlopeHold {
-  /// Slip angle: angle from the wheel planes to the direction of travel, left positive, as in
-  /// terramech::SlopeState. It is negative where the ground rises to the left, because the wheels are turned
-  /// uphill.
-  double slip_angle_rad = std::numeric_limits<double>::quiet_NaN();
-  /// Greatest side force over load |F|/N of a wheel [-].
-  double side_force_over_load = std::numeric_limits<double>::quiet_NaN();
-  /// Additional tilt until the rover tips; NaN also for a rover whose height of the centre of mass is
-  /// unknown.
-  double stability_margin_rad = std::numeric_limits<double>::quiet_NaN();
+  terramech::TurnEfforts turns{};  ///< of a turn on level ground; zeros if turning is free (tests)
 };
 
 /// Energy and time per horizontal metre on ground whose strength departs from its mean by deviate(k) standard
 /// deviations. A motion that fails there has the values of the least strength at which it does not.
 struct TravelForecast {
-  static constexpr int kDeviates = 9;
-  static constexpr double deviate(int k) noexcept { return -2.0 + 0.5 * k; }
+  static constexpr int kDeviates = 15;
+  static constexpr double deviate(int k) noexcept { return -3.5 + 0.5 * k; }
   std::array<float, kDeviates> energy_J_per_m{}, time_s_per_m{};
+  /// Energy and time with all axles on fresh ground, over those with later axles in ruts.
+  double fresh_energy = 0.0, fresh_time = 0.0;
   double fails_below = -10.0;  ///< departure below which the motion fails, in standard deviations
 };
 
@@ -322,6 +296,8 @@ struct SoilUncertainty {
   double entrapment = 1.0;
   /// Fraction of the variance of the drawbar pull that all places of a class share, by class index [-].
   std::vector<double> shared{};
+  /// Soil::rut_stiffness with its standard deviation, by class index [-].
+  std::vector<terramech::Estimate> ruts{};
 };
 
 /// Cost function of a map, shared by planners, route checks and reports. It combines the cost curves with
@@ -345,7 +321,9 @@ class TravelCost {
   /// Makes the cost function from cost curves in the order of their indices, at most 65534. Throws
   /// std::invalid_argument for more curves.
   TravelCost(const Limits& limits, std::vector<TravelCurve> curves);
-  TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty uncertainty = {});
+  /// `weights` are those of the curves of `grounds`.
+  TravelCost(const Limits& limits, const std::vector<GroundCost>& grounds, SoilUncertainty uncertainty = {},
+             const CostWeights& weights = {});
 
   /// Returns the cost [J/m] of one horizontal metre over the cell in a heading; infinite for a refused
   /// motion.
@@ -356,21 +334,21 @@ class TravelCost {
   /// Unknown.
   TravelState detail(CellCode cell, Direction heading) const noexcept;
 
-  /// Returns slip angle, side force and stability margin on the cell in a heading.
-  SlopeHold hold(CellCode cell, Direction heading) const noexcept;
-
   /// Returns energy and time of a horizontal metre over the strength of the ground; zeros without states.
   TravelForecast forecast(CellCode cell, Direction heading) const noexcept;
 
   /// Returns TravelStates::climb() in a heading; without states the gradient along the heading.
   double climb(CellCode cell, Direction heading) const noexcept;
 
-  /// Returns the cost of a turn by one radian at a vertex of a route on this cell; 0 on cells without a cost
-  /// curve. turns() returns the costs of turns by curve index.
-  TurnCost turn(CellCode cell) const noexcept {
-    return cell.curve() < turns_.size() ? turns_[cell.curve()].at_vertex : TurnCost{};
+  /// Returns the effort of a turn by one radian at a vertex of a route on this cell; zeros on cells without a
+  /// cost curve. turns() returns the efforts of turns by curve index, cost_J() the cost of an effort.
+  terramech::TurnEffort turn(CellCode cell) const noexcept {
+    return cell.curve() < turns_.size() ? turns_[cell.curve()].at_vertex : terramech::TurnEffort{};
   }
-  const std::vector<TurnCosts>& turns() const noexcept { return turns_; }
+  const std::vector<terramech::TurnEfforts>& turns() const noexcept { return turns_; }
+  double cost_J(const terramech::TurnEffort& turn) const noexcept {
+    return weights_.energy * turn.energy_J + weights_.time_W * turn.time_s;
+  }
 
   /// Returns true if the rover tips on the cell with this heading, standing or turning in place, on any soil.
   bool tips(CellCode cell, Direction heading) const noexcept;
@@ -392,7 +370,8 @@ class TravelCost {
   Limits limits_;
   std::vector<TravelCurve> curves_;
   std::vector<std::shared_ptr<const TravelStates>> states_;
-  std::vector<TurnCosts> turns_;
+  std::vector<terramech::TurnEfforts> turns_;
+  CostWeights weights_;
   double steady_gradient_;  // gradient up to which the rover tips in no heading
   SoilUncertainty uncertainty_;
 };
@@ -412,6 +391,9 @@ struct StrengthColumn {
   /// the law of ruts is uncertain and a wheel may leave its rut.
   float required = 0.0F;
   float margin_rad = 0.0F;  ///< stability margin on ground of the class; NaN: not known
+  /// Energy and time with all axles on fresh ground over those in ruts, on ground of the class or, where that
+  /// fails, on the weakest ground that holds.
+  float fresh_energy = 1.0F, fresh_time = 1.0F;
   /// Energy [J/m] and time [s/m] along the surface, slip, sinkage [m] and torque [N m] of the wheel with the
   /// greatest value, slip angle [rad] (negative where the ground rises to the left), side force over load.
   std::array<std::array<float, kStrengths>, kQuantities> entries{};
@@ -476,11 +458,9 @@ class TravelStates {
   /// Returns the state on a slope, interpolated linearly between the nodes around it. The category is the worst
   /// of the nodes. The refusal is Tips if a node tips, otherwise that of the first refused node.
   TravelState state(const terramech::Gradient& gradient) const;
-  /// Returns the costs of all nodes. Costs never decrease from row to row.
-  virtual TravelCurve curve(const CostWeights& weights) const = 0;
+  /// Returns the costs of all nodes.
+  TravelCurve curve(const CostWeights& weights) const;
 
-  /// Returns slip angle, side force and stability margin on a slope.
-  virtual SlopeHold hold(const terramech::Gradient&) const { return {}; }
   /// Returns the gradient of the straight climb that requires the same strength as the steepest node around a
   /// slope, by which state() judges; at least the gradient along the heading.
   virtual double climb(const terramech::Gradient& gradient) const { return gradient.along; }
@@ -492,6 +472,11 @@ class TravelStates {
   virtual std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const = 0;
 
  protected:
+  /// Energy [J/m], time [s/m] and hazard [1/m] of the cost of a node; an infinite energy refuses it.
+  using Terms = std::array<float, 3>;
+  /// Returns the terms of all nodes, row by row; they never decrease from row to row.
+  virtual std::vector<Terms> terms() const = 0;
+
   TravelStates() = default;
   TravelStates(const TravelStates&) = default;
   TravelStates& operator=(const TravelStates&) = default;
@@ -505,11 +490,12 @@ class TabulatedStates final : public TravelStates {
   explicit TabulatedStates(std::vector<TravelState> states);
 
   TravelState at(int row, int bin) const override;
-  TravelCurve curve(const CostWeights& weights) const override;
   TravelForecast forecast(const terramech::Gradient& gradient) const override;
   std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const override;
 
  private:
+  std::vector<Terms> terms() const override;
+
   std::vector<TravelState> states_;
 };
 

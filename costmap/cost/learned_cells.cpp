@@ -12,11 +12,11 @@ std::shared_ptr<const CostGrid> reweighted(const CostGrid& map, const CostWeight
     const auto& states = map.cost().states()[i];
     if (!states)
       throw std::domain_error("cost weights: the map's cost holds no energy, time and risk to weigh");
-    grounds.push_back(
-        {states->curve(weights), states, reweighted(map.cost().turns()[i], weights.energy, weights.time_W)});
+    grounds.push_back({states->curve(weights), states, map.cost().turns()[i]});
   }
   CostGrid::Content content = map.content();
-  content.cost = std::make_shared<const TravelCost>(map.cost().limits(), grounds, map.cost().uncertainty());
+  content.cost =
+      std::make_shared<const TravelCost>(map.cost().limits(), grounds, map.cost().uncertainty(), weights);
   return std::make_shared<const CostGrid>(std::move(content));
 }
 

@@ -31,6 +31,12 @@ StrengthColumn solvedOnSide(const Standings& rover, const Gradient& gradient, do
   column.least = static_cast<float>(least);
   // Wheels in ruts pull more uphill and brake less downhill.
   column.required = static_cast<float>(std::max(least, rover.fresh.leastStrength(gradient, least)));
+  const double strength = std::max(1.0, static_cast<double>(column.required));
+  const SlopeState ruts = rover.in_ruts.at(gradient, strength), fresh = rover.fresh.at(gradient, strength);
+  if (ruts.energy_J_per_m > 0.0 && fresh.speed_mps > 0.0) {
+    column.fresh_energy = static_cast<float>(fresh.energy_J_per_m / ruts.energy_J_per_m);
+    column.fresh_time = static_cast<float>(ruts.speed_mps / fresh.speed_mps);
+  }
   // The body turns as on ground of the class or, where that fails, as on the weakest ground that holds.
   column.margin_rad =
       static_cast<float>(rover.in_ruts.at(gradient, std::max(1.0, least)).stability_margin_rad);
@@ -69,6 +75,8 @@ StrengthColumn mixed(const StrengthColumn& a, const StrengthColumn& b, float sha
   out.least += share * (b.least - a.least);
   out.required += share * (b.required - a.required);
   out.margin_rad += share * (b.margin_rad - a.margin_rad);
+  out.fresh_energy += share * (b.fresh_energy - a.fresh_energy);
+  out.fresh_time += share * (b.fresh_time - a.fresh_time);
   for (std::size_t q = 0; q < out.entries.size(); ++q)
     for (std::size_t k = 0; k < out.entries[q].size(); ++k)
       out.entries[q][k] += share * (b.entries[q][k] - a.entries[q][k]);
@@ -196,21 +204,12 @@ TravelState TabulatedStates::at(int row, int bin) const {
   return states_[static_cast<std::size_t>(std::min(row, last) * TravelCurve::kBins + bin)];
 }
 
-TravelCurve TabulatedStates::curve(const CostWeights& weights) const {
-  const auto term = [](double weight, float value) {  // a quantity without a weight may be unknown
-    return weight > 0.0 ? weight * static_cast<double>(value) : 0.0;
-  };
-  std::vector<float> costs;
+std::vector<TravelStates::Terms> TabulatedStates::terms() const {
+  std::vector<Terms> terms;
   for (const TravelState& s : states_)
-    costs.push_back(s.refusal == Refusal::None ? static_cast<float>(term(weights.energy, s.energy_J_per_m) +
-                                                                    term(weights.time_W, s.time_s_per_m) +
-                                                                    term(weights.risk_J, s.risk_per_m))
-                                               : std::numeric_limits<float>::infinity());
-  TravelCurve curve;
-  std::copy_n(costs.begin(), TravelCurve::kBins, curve.cost_J_per_m.begin());
-  if (costs.size() > TravelCurve::kBins)
-    curve.crossing = std::make_shared<const std::vector<float>>(std::move(costs));
-  return curve;
+    terms.push_back({s.refusal == Refusal::None ? s.energy_J_per_m : std::numeric_limits<float>::infinity(),
+                     s.time_s_per_m, s.risk_per_m});
+  return terms;
 }
 
 TravelForecast TabulatedStates::forecast(const terramech::Gradient& gradient) const {

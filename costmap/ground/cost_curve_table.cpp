@@ -94,50 +94,28 @@ CategoryTable::Entry CategoryTable::at(CellCode cell) const noexcept {
 
 namespace {
 
-constexpr double kLeastStd = 0.01;  // least unit of the standard deviation, for priors with a smaller one
-constexpr double kSinkageStep = 0.02;
-constexpr double kSame = 1e-6;  // rounding tolerance [steps]: a quantised value remains equal
-constexpr double kOctaveStep = 0.125;
-constexpr double kLeastOctaves = -6.0, kMostOctaves = 8.0;
-constexpr double kMostSteps = 1e6;
-
-int bounded(double steps) {
-  return static_cast<int>(std::clamp(steps, -kMostSteps, kMostSteps));
+// Rounds down to a multiple of a step; a value remains equal if it is a multiple but for rounding.
+double roundedDown(double value, double step) {
+  constexpr double kSame = 1e-6;  // [steps]
+  return step * std::floor(value / step + kSame);
 }
 
-int stepsBelow(double value, double step) {
-  return bounded(std::floor(value / step + kSame));
-}
-
-int stepsAbove(double value, double step) {
-  return -stepsBelow(-value, step);
-}
-
-double unitOf(const GroundBelief& prior) noexcept {
-  return std::max(prior.pull.std, kLeastStd);
-}
-
-// Returns log2(share), in steps, rounded up.
-int logStepsAbove(double share) {
-  const double octaves = std::log2(std::clamp(share, std::exp2(kLeastOctaves), std::exp2(kMostOctaves)));
-  return stepsAbove(octaves, kOctaveStep);
+double roundedUp(double value, double step) {
+  return -roundedDown(-value, step);
 }
 
 }  // namespace
 
-GroundKind GroundKind::of(const GroundBelief& prior, int class_index, int other_class,
-                          const GroundBelief& belief) noexcept {
-  return {.class_index = class_index,
-          .other_class = other_class,
-          .pull = stepsBelow(belief.pull.value - prior.pull.value, kPullStep),
-          .pull_std = logStepsAbove(belief.pull.std / unitOf(prior)),
-          .sinkage = stepsAbove(std::max(belief.sinkage.value, 0.0) - prior.sinkage.value, kSinkageStep)};
-}
-
-GroundBelief GroundKind::belief(const GroundBelief& prior, const GroundClass& ground) const noexcept {
-  const double std = unitOf(prior) * std::exp2(kOctaveStep * pull_std);
-  return {.pull = {prior.pull.value + pull * kPullStep, std},
-          .sinkage = {std::max(prior.sinkage.value + sinkage * kSinkageStep, 0.0),
+GroundBelief rounded(const GroundBelief& belief, const GroundBelief& prior,
+                     const GroundClass& ground) noexcept {
+  constexpr double kPullStep = 0.005, kSinkageStep = 0.02, kOctaveStep = 0.125;
+  constexpr double kLeastStd = 0.01;  // least unit of the standard deviation, for priors with a smaller one
+  const double unit = std::max(prior.pull.std, kLeastStd),
+               octaves = std::clamp(std::log2(belief.pull.std / unit), -6.0, 8.0),
+               std = unit * std::exp2(roundedUp(octaves, kOctaveStep));
+  const double deeper = roundedUp(std::max(belief.sinkage.value, 0.0) - prior.sinkage.value, kSinkageStep);
+  return {.pull = {prior.pull.value + roundedDown(belief.pull.value - prior.pull.value, kPullStep), std},
+          .sinkage = {std::max(prior.sinkage.value + deeper, 0.0),
                       std::min(std / ground.pull_std, 1.0) * ground.sinkage_std}};
 }
 
@@ -160,9 +138,7 @@ CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model
     throw std::invalid_argument("cost curves: " + std::to_string(classes()) +
                                 " classes of ground, must be <= " + std::to_string(kMost));
   for (int i = 0; i < static_cast<int>(classes()); ++i) priors_.push_back(model_->prior(i));
-  beliefs_ = priors_;
-  grounds_.assign(classes(), refused());
-  categories_.resize(classes());
+  for (const GroundBelief& prior : priors_) curves_.push_back({refused(), prior, {}});
   priced_.assign(classes(), false);
   price(0);
 }
@@ -170,9 +146,8 @@ CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model
 void CostCurveTable::price(std::size_t class_index) {
   priced_[class_index] = true;
   const GroundBelief& prior = priors_[class_index];
-  grounds_[class_index] = model_->ground(static_cast<int>(class_index), prior);
-  beliefs_[class_index] = prior;
-  categories_[class_index] = CategoryTable(*model_, prior, grounds_[class_index]);
+  const GroundCost ground = model_->ground(static_cast<int>(class_index), prior);
+  curves_[class_index] = {ground, prior, CategoryTable(*model_, prior, ground)};
   cost_.reset();
 }
 
@@ -181,50 +156,39 @@ CellCode::Curve CostCurveTable::prior(int class_index) {
   return static_cast<CellCode::Curve>(class_index);
 }
 
-CellCode::Curve CostCurveTable::added(GroundCost ground, const GroundBelief& belief,
-                                      CategoryTable categories) {
-  grounds_.push_back(std::move(ground));
-  beliefs_.push_back(belief);
-  categories_.push_back(std::move(categories));
+CellCode::Curve CostCurveTable::added(Curve curve) {
+  curves_.push_back(std::move(curve));
   cost_.reset();
-  return static_cast<CellCode::Curve>(grounds_.size() - 1);
+  return static_cast<CellCode::Curve>(curves_.size() - 1);
 }
 
-CellCode::Curve CostCurveTable::learned(int class_index, int other_class, const GroundBelief& belief) {
-  const GroundKind kind = GroundKind::of(model_->prior(class_index), class_index, other_class, belief);
-  if (const auto known = numbers_.find(kind); known != numbers_.end()) return known->second;
-  if (grounds_.size() >= kMost) return CellCode::kBlocked;
-  // Uses the worst estimate of the kind, so that the curve does not depend on the estimate that occurred
-  // first.
-  const GroundBelief worst =
-      kind.belief(model_->prior(class_index), model_->parts().classes[static_cast<std::size_t>(class_index)]);
-  GroundCost ground = model_->ground(class_index, other_class, worst);
-  CategoryTable categories(*model_, worst, ground);
-  return numbers_[kind] = added(std::move(ground), worst, std::move(categories));
+CellCode::Curve CostCurveTable::learned(int class_index, const GroundBelief& belief, int other_class) {
+  // Uses the rounded estimate, so that the curve does not depend on the estimate that occurred first.
+  const GroundBelief worst = rounded(belief, model_->prior(class_index),
+                                     model_->parts().classes[static_cast<std::size_t>(class_index)]);
+  const std::tuple key(class_index, other_class, worst.pull.value, worst.pull.std, worst.sinkage.value);
+  if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
+  if (curves_.size() >= kMost) return CellCode::kBlocked;
+  const GroundCost ground = model_->ground(class_index, worst, other_class);
+  return numbers_[key] = added({ground, worst, CategoryTable(*model_, worst, ground)});
 }
 
-GroundCost CostCurveTable::dearer(const GroundCost& ground, double added_J_per_m) const {
-  const TravelPolicy& policy = model_->parts().policy;
-  const auto states = ground.states->withAdded(added_J_per_m);
-  return {
-      .curve = states->curve({.energy = 1.0, .time_W = policy.time_weight_W, .risk_J = policy.risk_weight_J}),
-      .states = states,
-      .turns = ground.turns};
+CostCurveTable::Curve CostCurveTable::dearer(Curve curve, double added_J_per_m) const {
+  curve.ground.states = curve.ground.states->withAdded(added_J_per_m);
+  curve.ground.curve = curve.ground.states->curve(model_->weights());
+  return curve;
 }
 
 CellCode::Curve CostCurveTable::dearer(CellCode::Curve number, int step, double added_J_per_m) {
   if (const auto known = dearer_.find({number, step}); known != dearer_.end()) return known->second.number;
-  if (grounds_.size() >= kMost) return CellCode::kBlocked;
-  const CellCode::Curve next =
-      added(dearer(grounds_[number], added_J_per_m), beliefs_[number], categories_[number]);
+  if (curves_.size() >= kMost) return CellCode::kBlocked;
+  const CellCode::Curve next = added(dearer(curves_[number], added_J_per_m));
   dearer_.emplace(std::pair(number, step), Dearer{next, added_J_per_m});
   return next;
 }
 
 void CostCurveTable::restart() {
-  grounds_.resize(classes());
-  beliefs_.resize(classes());
-  categories_.resize(classes());
+  curves_.erase(curves_.begin() + static_cast<std::ptrdiff_t>(classes()), curves_.end());
   numbers_.clear();
   dearer_.clear();
   cost_.reset();
@@ -238,11 +202,7 @@ bool CostCurveTable::setPrior(int class_index, const GroundBelief& next) {
   if (!priced_[i]) return true;  // at class borders, the prior is in use
   price(i);
   for (const auto& [from, its] : dearer_)
-    if (from.first == i) {
-      grounds_[its.number] = dearer(grounds_[i], its.added_J_per_m);
-      beliefs_[its.number] = next;
-      categories_[its.number] = categories_[i];
-    }
+    if (from.first == i) curves_[its.number] = dearer(curves_[i], its.added_J_per_m);
   return true;
 }
 
@@ -256,13 +216,16 @@ SoilUncertainty CostCurveTable::uncertainty() const {
   for (std::size_t i = 0; i < classes(); ++i) {
     const double all = priors_[i].pull.std, apart = parts.classes[i].pull_std;
     uncertainty.shared.push_back(all > apart ? 1.0 - apart * apart / (all * all) : 0.0);
+    uncertainty.ruts.push_back({parts.classes[i].soil.rut_stiffness, parts.classes[i].rut_stiffness_std});
   }
   return uncertainty;
 }
 
 std::shared_ptr<const TravelCost> CostCurveTable::cost() const {
-  if (!cost_) cost_ = std::make_shared<TravelCost>(model_->limits(), grounds_, uncertainty());
-  return cost_;
+  if (cost_) return cost_;
+  std::vector<GroundCost> grounds;
+  for (const Curve& curve : curves_) grounds.push_back(curve.ground);
+  return cost_ = std::make_shared<TravelCost>(model_->limits(), grounds, uncertainty(), model_->weights());
 }
 
 }  // namespace talus::costmap

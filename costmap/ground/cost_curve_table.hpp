@@ -1,9 +1,9 @@
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -47,42 +47,23 @@ class CategoryTable {
   std::vector<Entry> entries_;
 };
 
-/// Estimated strength of ground, quantised so that similar estimates share one cost curve. Each quantity is
-/// relative to the prior of the terrain class and rounded towards danger, in steps of
+/// Returns an estimate of the strength of ground of a class, rounded so that similar estimates share one cost
+/// curve. Each quantity is relative to `prior`, the estimate of the class before any evidence
+/// (GroundModel::prior()), and rounded towards danger, in steps of
 ///   - drawbar pull over load DP/W: 0.005, rounded down;
 ///   - standard deviation of DP/W: a factor 2^(1/8), from 1/64 to 256 times that of the prior, rounded up;
 ///   - sinkage over wheel radius: 0.02, rounded up.
 /// An estimate no worse than the prior is not rounded beyond the prior, so that little evidence never increases a
-/// cost.
-struct GroundKind {
-  static constexpr double kPullStep = 0.005;  ///< step of DP/W [-]
-
-  int class_index = 0;
-  /// Second possible terrain class of the ground; equal to class_index if there is only one.
-  int other_class = 0;
-  /// DP/W minus that of the prior, in steps of kPullStep.
-  int pull = 0;
-  int pull_std = 0;  ///< standard deviation of DP/W, in steps of a factor 2^(1/8) relative to the prior's
-  /// Sinkage over wheel radius minus that of the prior, in steps of 0.02.
-  int sinkage = 0;
-
-  auto operator<=>(const GroundKind&) const = default;  // NOLINT(modernize-use-nullptr): of clang 14
-
-  /// Returns the quantised form of the estimate `belief`. `prior` is the estimate of the class before any
-  /// evidence (GroundModel::prior()).
-  static GroundKind of(const GroundBelief& prior, int class_index, int other_class,
-                       const GroundBelief& belief) noexcept;
-
-  /// Returns the worst estimate that is quantised to this kind. The standard deviation of sinkage is reduced
-  /// in proportion to that of DP/W, and is at most ground.sinkage_std.
-  GroundBelief belief(const GroundBelief& prior, const GroundClass& ground) const noexcept;
-};
+/// cost. The standard deviation of sinkage is reduced in proportion to that of DP/W, and is at most that of the
+/// class. A rounded estimate is unchanged.
+GroundBelief rounded(const GroundBelief& belief, const GroundBelief& prior,
+                     const GroundClass& ground) noexcept;
 
 /// Table of the cost curves of a map. A cost curve is the cost per metre over the gradient for ground of one
 /// estimated strength. The table assigns an index to each estimate. The indices 0 .. classes-1 belong to the priors
 /// of the terrain classes. The curve of a prior is computed at the first call of prior() for its class; before that
 /// call, it refuses every heading, i.e. has infinite cost. The constructor computes the curve of the first class. An
-/// estimate from telemetry is quantised towards danger (GroundKind) and receives an index at its first occurrence, or
+/// estimate from telemetry is rounded towards danger (rounded()) and receives an index at its first occurrence, or
 /// CellCode::kBlocked, which refuses every heading, if the table is full. Not thread-safe.
 class CostCurveTable {
  public:
@@ -97,11 +78,9 @@ class CostCurveTable {
     return priors_[static_cast<std::size_t>(class_index)];
   }
   /// Returns the index of the curve of an estimate from telemetry, for ground of the class `class_index`, or
-  /// possibly of `other_class`. No cost of the curve is below the cost of the same estimate on either class.
-  CellCode::Curve learned(int class_index, int other_class, const GroundBelief& belief);
-  CellCode::Curve learned(int class_index, const GroundBelief& belief) {
-    return learned(class_index, class_index, belief);
-  }
+  /// possibly of `other_class` (-1: none). No cost of the curve is below the cost of the same estimate on either
+  /// class.
+  CellCode::Curve learned(int class_index, const GroundBelief& belief, int other_class = -1);
 
   /// Returns the index of a curve that equals the curve with index `number` except that `added_J_per_m` is
   /// added to the energy. `number` must not be a result of dearer(). `step` > 0 identifies the added energy. Returns
@@ -109,7 +88,7 @@ class CostCurveTable {
   CellCode::Curve dearer(CellCode::Curve number, int step, double added_J_per_m);
 
   /// Returns the number of indices in use.
-  std::size_t size() const noexcept { return grounds_.size(); }
+  std::size_t size() const noexcept { return curves_.size(); }
   /// Discards all estimates from telemetry.
   void restart();
 
@@ -118,33 +97,37 @@ class CostCurveTable {
   bool setPrior(int class_index, const GroundBelief& next);
 
   /// Returns the estimate from which the curve with an index was computed.
-  const GroundBelief& belief(CellCode::Curve number) const { return beliefs_[number]; }
+  const GroundBelief& belief(CellCode::Curve number) const { return curves_[number].belief; }
   /// Returns the categories of the ground with a curve index, tabulated over the gradient of the plane of a
   /// cell.
-  const CategoryTable& categories(CellCode::Curve number) const { return categories_[number]; }
+  const CategoryTable& categories(CellCode::Curve number) const { return curves_[number].categories; }
 
   /// Returns the cost function with the curves of all assigned indices. Calls return the same object until a
   /// curve is added.
   std::shared_ptr<const TravelCost> cost() const;
 
  private:
-  GroundCost dearer(const GroundCost& ground, double added_J_per_m) const;
+  struct Curve {
+    GroundCost ground;
+    GroundBelief belief;
+    CategoryTable categories;
+  };
+  Curve dearer(Curve curve, double added_J_per_m) const;
   SoilUncertainty uncertainty() const;
   void price(std::size_t class_index);
-  CellCode::Curve added(GroundCost ground, const GroundBelief& belief, CategoryTable categories);
+  CellCode::Curve added(Curve curve);
   std::size_t classes() const noexcept { return model_->parts().classes.size(); }
 
   std::shared_ptr<const GroundModel> model_;
-  std::vector<GroundCost> grounds_;
-  std::vector<CategoryTable> categories_;
-  std::vector<GroundBelief> beliefs_;
+  std::vector<Curve> curves_;
   std::vector<GroundBelief> priors_;  // priors of the classes
   std::vector<bool> priced_;          // by class: prior() was called
   struct Dearer {
     CellCode::Curve number;
     double added_J_per_m;
   };
-  std::map<GroundKind, CellCode::Curve> numbers_;
+  // Curves of learned() by both classes, DP/W, its standard deviation, and sinkage.
+  std::map<std::tuple<int, int, double, double, double>, CellCode::Curve> numbers_;
   std::map<std::pair<CellCode::Curve, int>, Dearer> dearer_;  // curves of dearer(), by curve index and step
   mutable std::shared_ptr<const TravelCost> cost_;
 };

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include <talus/costmap/cost/learned_cells.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/terramech/mobility/slope_equilibrium.hpp>
 #include <talus/terramech/mobility/turning.hpp>
@@ -145,41 +144,43 @@ StrengthOfClass GroundModel::strengthOf(int class_index, const GroundBelief& bel
           .deeper = deeper};
 }
 
-std::shared_ptr<const GroundStates> GroundModel::states(int class_index, int other_class,
-                                                        const GroundBelief& belief) const {
+std::shared_ptr<const GroundStates> GroundModel::states(int class_index, const GroundBelief& belief,
+                                                        int other_class) const {
   std::vector<StrengthOfClass> classes{strengthOf(class_index, belief)};
-  if (other_class != class_index) classes.push_back(strengthOf(other_class, belief));
+  if (other_class >= 0) classes.push_back(strengthOf(other_class, belief));
   return std::make_shared<const GroundStates>(rules_, std::move(classes), belief);
 }
 
-GroundCost GroundModel::ground(int class_index, int other_class, const GroundBelief& belief) const {
+CostWeights GroundModel::weights() const noexcept {
+  return {.energy = 1.0, .time_W = parts_.policy.time_weight_W, .risk_J = parts_.policy.risk_weight_J};
+}
+
+GroundCost GroundModel::ground(int class_index, const GroundBelief& belief, int other_class) const {
   if (parts_.stated) {
     const auto& states = parts_.stated->states[static_cast<std::size_t>(class_index)];
-    return {.curve = states->curve({.energy = 1.0, .time_W = 0.0, .risk_J = 0.0}), .states = states};
+    return {.curve = states->curve(weights()), .states = states};
   }
-  const auto states = this->states(class_index, other_class, belief);
-  GroundCost ground{
-      .curve = states->curve(
-          {.energy = 1.0, .time_W = parts_.policy.time_weight_W, .risk_J = parts_.policy.risk_weight_J}),
-      .states = states};
+  const auto states = this->states(class_index, belief, other_class);
   const TravelState flat = states->at(0, TravelCurve::kBins / 2);
-  ground.turns = turns(class_index, flat);
-  if (other_class != class_index) ground.turns = costmap::dearer(ground.turns, turns(other_class, flat));
+  GroundCost ground{.curve = states->curve(weights()), .states = states, .turns = turns(class_index, flat)};
+  if (other_class < 0) return ground;
+  const terramech::TurnEfforts others = turns(other_class, flat);
+  for (const auto way : {&terramech::TurnEfforts::on_arc, &terramech::TurnEfforts::in_place,
+                         &terramech::TurnEfforts::at_vertex}) {
+    terramech::TurnEffort& turn = ground.turns.*way;
+    turn = {std::max(turn.energy_J, (others.*way).energy_J), std::max(turn.time_s, (others.*way).time_s)};
+  }
   return ground;
 }
 
-TurnCosts GroundModel::turns(int class_index, const TravelState& flat) const {
+terramech::TurnEfforts GroundModel::turns(int class_index, const TravelState& flat) const {
   const terramech::Soil& soil = parts_.classes[static_cast<std::size_t>(class_index)].soil;
   const terramech::Rover& rover = parts_.rover;
   const double hotel_J_per_m = rover.hotel_power_W * static_cast<double>(flat.time_s_per_m);
-  const terramech::TurnEfforts efforts = terramech::turnEfforts(
+  return terramech::turnEfforts(
       rover, {.lateral_resistance = std::tan(soil.friction_angle_rad),
               .bulldozing_N = terramech::bulldozing_N(soil, rover, static_cast<double>(flat.sinkage_m)),
               .rolling_J_per_m = std::max(0.0, static_cast<double>(flat.energy_J_per_m) - hotel_J_per_m)});
-  const double time_W = parts_.policy.time_weight_W;
-  const TurnCost on_arc = costmap::priced(efforts.on_arc, 1.0, time_W),
-                 in_place = costmap::priced(efforts.in_place, 1.0, time_W);
-  return {on_arc, in_place, rover.turning_radius_m > 0.0 ? on_arc : in_place};
 }
 
 TravelCost::Limits GroundModel::limits() const {

@@ -73,8 +73,6 @@ class GroundStates final : public TravelStates {
                const GroundBelief& belief, double added_J_per_m = 0.0);
 
   TravelState at(int row, int bin) const override;
-  TravelCurve curve(const CostWeights& weights) const override;
-  SlopeHold hold(const terramech::Gradient& gradient) const override;
   double climb(const terramech::Gradient& gradient) const override;
   double steepest(double gradient) const override;
   TravelForecast forecast(const terramech::Gradient& gradient) const override;
@@ -82,18 +80,14 @@ class GroundStates final : public TravelStates {
   std::shared_ptr<const TravelStates> withAdded(double added_J_per_m) const override;
 
  private:
-  // Terms of the cost of a node; infinite if refused.
-  struct Terms {
-    double energy_J_per_m, time_s_per_m, risk_per_m;
-  };
   struct Node {
     TravelState state;
-    Terms terms;
+    std::array<double, 3> terms;  // of the cost
   };
   class WeightTable;
   Node node(int row, int bin, const std::vector<WeightTable>* weights = nullptr) const;
   Node node(const StrengthOfClass& of, const WeightTable* weights, int row, int bin) const;
-  std::vector<std::array<float, 3>> terms() const;
+  std::vector<Terms> terms() const override;
   bool isAllowed(std::size_t node) const;
   int rows() const noexcept;
 
@@ -198,21 +192,19 @@ class GroundModel {
   /// (GroundClass::resistance_std) through the sinkage exponent, which is kept from 0.3 to 2.
   std::shared_ptr<const GroundModel> withResistance(int class_index, double deviations) const;
 
-  /// Returns the cost curve and the tabulated travel states of ground that belongs to a class and has the
-  /// estimated strength `belief`.
-  GroundCost ground(int class_index, const GroundBelief& belief) const {
-    return ground(class_index, class_index, belief);
-  }
-  /// Returns the cost curve and the tabulated travel states of ground that may belong to either of two
-  /// classes: each quantity is the less favourable one of both classes.
-  GroundCost ground(int class_index, int other_class, const GroundBelief& belief) const;
+  /// Returns the weights of the cost by the policy.
+  CostWeights weights() const noexcept;
+  /// Returns the cost curve and the travel states of ground that belongs to a class and has the estimated strength
+  /// `belief`. If it may also belong to `other_class` (-1: none), each quantity is the less favourable one of
+  /// both classes.
+  GroundCost ground(int class_index, const GroundBelief& belief, int other_class = -1) const;
 
   /// Returns the lattice of equilibria of a class.
   const std::shared_ptr<const SlopeLattice>& lattice(int class_index) const;
 
   /// Returns the travel state on a gradient along the heading (rise over run) without cross slope.
   TravelState state(int class_index, const GroundBelief& belief, double gradient) const {
-    return states(class_index, class_index, belief)->state({.along = gradient});
+    return states(class_index, belief)->state({.along = gradient});
   }
 
   /// Returns the category of ground with the mean strength of `belief` at a gradient along the heading, and
@@ -242,10 +234,11 @@ class GroundModel {
   };
   Ground& of(int class_index) const noexcept { return *grounds_[static_cast<std::size_t>(class_index)]; }
   const terramech::SlopeEquilibrium& slope(int class_index) const;
-  std::shared_ptr<const GroundStates> states(int class_index, int other_class,
-                                             const GroundBelief& belief) const;
+  std::shared_ptr<const GroundStates> states(int class_index, const GroundBelief& belief,
+                                             int other_class = -1) const;
   StrengthOfClass strengthOf(int class_index, const GroundBelief& belief) const;
-  TurnCosts turns(int class_index, const TravelState& flat) const;  // `flat`: state on level ground
+  terramech::TurnEfforts turns(int class_index,
+                               const TravelState& flat) const;  // `flat`: state on level ground
 
   Parts parts_;
   std::shared_ptr<const GroundRules> rules_;

@@ -173,6 +173,11 @@ GroundStates::Node GroundStates::node(const StrengthOfClass& of, const WeightTab
   state.weak = static_cast<float>(weak);
   state.pull_margin = static_cast<float>(belief_.pull.value - climb);
   state.category = rules_->category(belief_, climb);
+  if (excess >= 0.0) {
+    state.slip_angle_rad = static_cast<float>(at(StrengthColumn::kSlipAngle));
+    state.side_force_over_load = static_cast<float>(at(StrengthColumn::kSideForce));
+  }
+  state.stability_margin_rad = column.margin_rad;
   const bool excluded = (state.category == terramech::Category::Dangerous && !policy.allow_dangerous) ||
                         (state.category == terramech::Category::Marginal && !policy.allow_marginal);
   if (static_cast<double>(column.margin_rad) < kUpright_rad)
@@ -200,31 +205,27 @@ GroundStates::Node GroundStates::node(int row, int bin, const std::vector<Weight
   for (std::size_t k = 1; k < classes_.size(); ++k) {
     const Node other = of(k);
     out.state = worse(out.state, other.state);
-    out.terms = {std::max(out.terms.energy_J_per_m, other.terms.energy_J_per_m),
-                 std::max(out.terms.time_s_per_m, other.terms.time_s_per_m),
-                 std::max(out.terms.risk_per_m, other.terms.risk_per_m)};
+    for (std::size_t t = 0; t < out.terms.size(); ++t) out.terms[t] = std::max(out.terms[t], other.terms[t]);
   }
   return out;
 }
 
 // Returns the terms of all nodes, raised from row to row.
-std::vector<std::array<float, 3>> GroundStates::terms() const {
+std::vector<TravelStates::Terms> GroundStates::terms() const {
   const int all = rows();
   std::vector<WeightTable> weights;
   for (const StrengthOfClass& of : classes_) weights.emplace_back(of.strength.std);
-  std::vector<std::array<float, 3>> terms(static_cast<std::size_t>(all * TravelCurve::kBins),
-                                          {kRefused, kRefused, kRefused});
+  std::vector<Terms> terms(static_cast<std::size_t>(all * TravelCurve::kBins),
+                           {kRefused, kRefused, kRefused});
   for (int row = 0; row < all; ++row)
     for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
       const auto i = static_cast<std::size_t>(row * TravelCurve::kBins + bin);
       if (row > 0 && !(terms[i - TravelCurve::kBins][0] < kRefused)) continue;
       const Node here = node(row, bin, &weights);
       if (here.state.refusal != Refusal::None) continue;
-      terms[i] = {static_cast<float>(here.terms.energy_J_per_m), static_cast<float>(here.terms.time_s_per_m),
-                  static_cast<float>(here.terms.risk_per_m)};
-      if (row > 0)
-        for (std::size_t k = 0; k < 3; ++k)
-          terms[i][k] = std::max(terms[i][k], terms[i - TravelCurve::kBins][k]);
+      for (std::size_t k = 0; k < 3; ++k)
+        terms[i][k] =
+            std::max(static_cast<float>(here.terms[k]), row > 0 ? terms[i - TravelCurve::kBins][k] : 0.0F);
     }
   return terms;
 }
@@ -243,35 +244,6 @@ TravelState GroundStates::at(int row, int bin) const {
        --r)
     state.refusal = node(r - 1, bin).state.refusal;
   return state;
-}
-
-TravelCurve GroundStates::curve(const CostWeights& weights) const {
-  auto costs = std::make_shared<std::vector<float>>();
-  for (const auto& [energy_J, time_s, risk] : terms())
-    costs->push_back(energy_J < kRefused ? static_cast<float>(weights.energy * static_cast<double>(energy_J) +
-                                                              weights.time_W * static_cast<double>(time_s) +
-                                                              weights.risk_J * static_cast<double>(risk))
-                                         : kRefused);
-  TravelCurve curve;
-  std::copy_n(costs->begin(), TravelCurve::kBins, curve.cost_J_per_m.begin());
-  if (rows() > 1) curve.crossing = std::move(costs);
-  return curve;
-}
-
-SlopeHold GroundStates::hold(const terramech::Gradient& gradient) const {
-  SlopeHold out{0.0, 0.0, 0.0};
-  const StrengthOfClass& of = classes_.front();
-  TravelCurve::forNodesAround(gradient, [&](int row, int bin, double weight) {
-    const StrengthColumn* column = of.lattice->contains(bin) ? &of.lattice->node(row, bin) : nullptr;
-    const double excess = column ? of.strength.value - static_cast<double>(column->least) : -1.0;
-    const auto add = [&](double& to, double value) { to += weight * value; };
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    add(out.slip_angle_rad, excess >= 0.0 ? column->at(StrengthColumn::kSlipAngle, excess) : none);
-    add(out.side_force_over_load, excess >= 0.0 ? column->at(StrengthColumn::kSideForce, excess) : none);
-    add(out.stability_margin_rad, column ? static_cast<double>(column->margin_rad) : none);
-  });
-  out.slip_angle_rad = std::copysign(out.slip_angle_rad, 0.0 - gradient.across);
-  return out;
 }
 
 double GroundStates::climb(const terramech::Gradient& gradient) const {
@@ -295,6 +267,8 @@ TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const
     const double reserve = of.strength.value - static_cast<double>(column.least);
     const double scale = weight * std::hypot(1.0, TravelCurve::gradient(bin));
     out.fails_below -= weight * reserve / std::max(of.strength.std, 1e-6);
+    out.fresh_energy += weight * static_cast<double>(column.fresh_energy);
+    out.fresh_time += weight * static_cast<double>(column.fresh_time);
     for (int d = 0; d < TravelForecast::kDeviates; ++d) {
       const double excess = reserve + TravelForecast::deviate(d) * of.strength.std;
       const auto k = static_cast<std::size_t>(d);

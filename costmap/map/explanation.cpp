@@ -180,12 +180,13 @@ void addDrive(const TraversabilityMap& map, maps::Cell cell, const Direction& he
   out.causes.push_back(
       {"drawbar_pull_margin", static_cast<double>(state.pull_margin), kNotKnown, drives, ""});
   out.causes.push_back({"slip", static_cast<double>(state.slip), kNotKnown, drives, ""});
-  const SlopeHold hold = grid->cost().hold(code, heading);
   const std::string balance = "rover equilibrium on the soil of the class";
-  out.causes.push_back({"slip_angle_rad", hold.slip_angle_rad, kNotKnown, balance, ""});
-  out.causes.push_back({"side_force_over_load", hold.side_force_over_load, kNotKnown, balance, ""});
-  if (std::isfinite(hold.stability_margin_rad))
-    out.causes.push_back({"stability_margin_rad", hold.stability_margin_rad, kNotKnown, balance, ""});
+  const auto add = [&](const char* name, float value) {
+    out.causes.push_back({name, static_cast<double>(value), kNotKnown, balance, ""});
+  };
+  add("slip_angle_rad", state.slip_angle_rad);
+  add("side_force_over_load", state.side_force_over_load);
+  if (std::isfinite(state.stability_margin_rad)) add("stability_margin_rad", state.stability_margin_rad);
   out.causes.push_back({"sinkage_m", static_cast<double>(state.sinkage_m), kNotKnown, drives,
                         limitRemark(static_cast<double>(state.sinkage_m), map.model().rover().clearance_m)});
   out.causes.push_back(

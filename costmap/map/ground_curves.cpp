@@ -68,29 +68,7 @@ std::optional<GroundBelief> TraversabilityMap::ground(maps::Cell cell) const {
 
 namespace {
 
-constexpr int kPullBits = 11, kStdBits = 7, kSinkageBits = 10;
 constexpr int kFew = 4;  // number of other cells that a box may include with a new cell
-constexpr int kPullZero = 1 << (kPullBits - 1), kStdZero = 48, kSinkageZero = 128;
-
-// Packs a kind into a non-zero word. Range: drawbar pull over load within 5 of the prior, sinkage up to 17
-// radii above.
-std::uint32_t packed(const GroundKind& kind) {
-  const auto field = [](int value, int bits) {
-    return static_cast<std::uint32_t>(std::clamp(value, 0, (1 << bits) - 1));
-  };
-  return 1U << 31 | field(kind.pull + kPullZero, kPullBits) << (kStdBits + kSinkageBits) |
-         field(kind.pull_std + kStdZero, kStdBits) << kSinkageBits |
-         field(kind.sinkage + kSinkageZero, kSinkageBits);
-}
-
-GroundKind unpacked(std::uint32_t word, int class_index) {
-  const auto field = [&](int low, int bits) { return static_cast<int>(word >> low & ((1U << bits) - 1U)); };
-  return {.class_index = class_index,
-          .other_class = class_index,
-          .pull = field(kStdBits + kSinkageBits, kPullBits) - kPullZero,
-          .pull_std = field(kSinkageBits, kStdBits) - kStdZero,
-          .sinkage = field(0, kSinkageBits) - kSinkageZero};
-}
 
 // Adds a cell to the last box, or as a new box if the last box would include more than kFew other cells.
 void join(std::vector<maps::CellBox>& boxes, const maps::Cell& cell) {
@@ -127,9 +105,17 @@ WheelSwath::Ground GroundCurves::ground(maps::Cell cell) const {
   if (index < 0) return {.belief = {}, .unseen = true};
   const std::uint32_t word = any_learned_ ? learned_[cell] : 0U;
   if (word == 0) return {index, table_.priorBelief(index)};
-  return {index, unpacked(word, index)
-                     .belief(site_->model->prior(index),
-                             site_->model->parts().classes[static_cast<std::size_t>(index)])};
+  return {index, kinds_[word - 1]};
+}
+
+std::uint32_t GroundCurves::wordOf(const GroundBelief& ground, int class_index) {
+  const GroundBelief kind = rounded(ground, site_->model->prior(class_index),
+                                    site_->model->parts().classes[static_cast<std::size_t>(class_index)]);
+  const auto next = static_cast<std::uint32_t>(kinds_.size() + 1);
+  const auto [known, is_new] =
+      words_.try_emplace({kind.pull.value, kind.pull.std, kind.sinkage.value, kind.sinkage.std}, next);
+  if (is_new) kinds_.push_back(kind);
+  return known->second;
 }
 
 maps::CellBox GroundCurves::within(const maps::CellBox& range) const noexcept {
@@ -185,7 +171,8 @@ CellCode::Curve GroundCurves::numberOfGround(maps::Cell cell) {
   const bool own_alone =
       judged.weakest_class == own.class_index && WheelSwath::Ground{own.class_index, judged.belief} == own;
   if (own_alone && !learned) return table_.prior(own.class_index);
-  return table_.learned(own.class_index, judged.weakest_class, judged.belief);
+  const bool one_class = judged.weakest_class == own.class_index;
+  return table_.learned(own.class_index, judged.belief, one_class ? -1 : judged.weakest_class);
 }
 
 GroundCurves::ClassChange GroundCurves::learnClasses(const EvidenceField& field) {
@@ -209,7 +196,7 @@ std::vector<maps::CellBox> GroundCurves::learn(EvidenceBeliefs& beliefs,
         std::uint32_t word = 0;
         if (index >= 0)
           if (const InferredGround& belief = beliefs.at(cell, index); belief.learned)
-            word = packed(GroundKind::of(site_->model->prior(index), index, index, belief.ground));
+            word = wordOf(belief.ground, index);
         if (!learned_.set(cell, word)) continue;
         any_learned_ = true;
         join(changed, cell);

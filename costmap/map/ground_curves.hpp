@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -39,7 +41,7 @@ class PlaceBeliefs {
 
 /// Assigns an index of a cost curve (cost per metre over the gradient) to each cell. If all ground that a
 /// wheel may touch has the same estimated strength, the curve is that of the cell's ground; otherwise it is
-/// that of the ground combined by WheelSwath. Stores the learned ground of cells as GroundKind, and
+/// that of the ground combined by WheelSwath. Stores the learned ground of cells rounded, and
 /// recomputes cells only after changes within reach of the wheels. Not thread-safe.
 class GroundCurves {
  public:
@@ -75,6 +77,7 @@ class GroundCurves {
 
  private:
   WheelSwath::Ground ground(maps::Cell cell) const;
+  std::uint32_t wordOf(const GroundBelief& ground, int class_index);
   CellCode::Curve numberOfGround(maps::Cell cell);
   CellCode::Curve withLayers(CellCode::Curve number, maps::Cell cell);
   bool alike(maps::Cell cell) const noexcept;
@@ -85,8 +88,10 @@ class GroundCurves {
   AddedCost added_;
   WheelSwath swath_;
   std::vector<bool> borders_;
-  LearnedCells learned_;
-  std::vector<ClassState> states_;  // class states from which learned_ was computed
+  LearnedCells learned_;                                  // 1 + index in kinds_
+  std::vector<GroundBelief> kinds_;                       // distinct rounded estimates of learned cells
+  std::map<std::array<double, 4>, std::uint32_t> words_;  // of the numbers of a kind
+  std::vector<ClassState> states_;                        // class states from which learned_ was computed
   bool any_learned_ = false;
   std::vector<WheelSwath::Ground> around_;
 };

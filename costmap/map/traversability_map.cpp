@@ -354,7 +354,7 @@ std::size_t MapCosts::cellsChanged(const CostGrid& before) const {
       const std::size_t from = before.at({column, row}).curve(), to = now->at({column, row}).curve();
       const bool same = from >= old_curves.size() || to >= curves.size()
                             ? from == to
-                            : old_curves[from].cost_J_per_m == curves[to].cost_J_per_m;
+                            : std::ranges::equal(old_curves[from].level(), curves[to].level());
       changed += same ? 0U : 1U;
     }
   return changed;

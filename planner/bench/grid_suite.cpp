@@ -214,8 +214,7 @@ struct Scenario {
 };
 
 std::shared_ptr<const costmap::TravelCost> flatCost() {
-  costmap::TravelCurve curve{};
-  curve.cost_J_per_m.fill(1.0F);
+  const costmap::TravelCurve curve(std::vector<float>(costmap::TravelCurve::kBins, 1.0F));
   return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve});
 }
 

@@ -332,8 +332,7 @@ bool DirectionalCostBounds::compute(CellCode cell, Limits& limits) {
     lowered[k] = gauge[k] * std::clamp(std::min(kept(k), kept((k + kHeadings - 1) % kHeadings)), 0.0, 1.0);
   if (*std::ranges::min_element(lowered) > 1e-6 * *std::ranges::max_element(lowered)) makeConvex(lowered);
   // Gauges below the cost can be mixed; a share of the lowest cost of the curve keeps every limit positive.
-  const auto least_J =
-      static_cast<double>(*std::ranges::min_element(cost_.curves()[cell.curve()].cost_J_per_m));
+  const auto least_J = static_cast<double>(*std::ranges::min_element(cost_.curves()[cell.curve()].level()));
   const double least = *std::ranges::min_element(lowered), missing = kLeastShare * least_J - least;
   const double share = missing > 0.0 ? missing / (least_J - least) : 0.0;
   for (std::size_t k = 0; k < kHeadings; ++k)

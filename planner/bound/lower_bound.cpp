@@ -25,7 +25,7 @@ class LowestCosts {
  public:
   explicit LowestCosts(const costmap::TravelCost& cost) : least_(cost.curves().size()) {
     for (std::size_t k = 0; k < least_.size(); ++k) {
-      const auto& row = cost.curves()[k].cost_J_per_m;
+      const auto row = cost.curves()[k].level();
       double least = kInfinity;
       for (int reach = 0; reach <= kMiddle; ++reach) {
         least =
@@ -84,7 +84,7 @@ double cheapestWithin(const costmap::CostGrid& map, const LowestCosts& metres, c
 double cheapestOfAny(const costmap::TravelCost& cost) noexcept {
   double least = kInfinity;
   for (const TravelCurve& curve : cost.curves())
-    for (const float value : curve.cost_J_per_m) least = std::min(least, static_cast<double>(value));
+    for (const float value : curve.level()) least = std::min(least, static_cast<double>(value));
   return std::isfinite(least) ? std::max(least, 0.0) : 0.0;
 }
 
@@ -97,7 +97,7 @@ double cheapestMetre_J(const costmap::CostGrid& map) {
   float cheapest = std::numeric_limits<float>::infinity();
   const auto& curves = map.cost().curves();
   for (std::size_t k = 0; k < curves.size(); ++k)
-    if (used[k]) cheapest = std::min(cheapest, *std::ranges::min_element(curves[k].cost_J_per_m));
+    if (used[k]) cheapest = std::min(cheapest, *std::ranges::min_element(curves[k].level()));
   return std::isfinite(cheapest) ? static_cast<double>(std::max(cheapest, 0.0F)) : 0.0;
 }
 

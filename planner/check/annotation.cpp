@@ -98,7 +98,7 @@ class Annotator {
   // A turn in place, or the change of heading along an arc.
   void turn(double turn_rad, Point place) {
     const auto cell = grid_.cellAt(place);
-    const TurnCosts& prices =
+    const TurnEfforts& prices =
         cell ? input_.kinematics.turnsOn(input_.map.at(*cell).curve()) : input_.kinematics.turns;
     const bool in_place = how_.curvature_1_m == 0.0;
     spend(in_place ? prices.in_place : prices.on_arc, std::abs(turn_rad));
@@ -154,7 +154,7 @@ class Annotator {
   }
 
   std::vector<RouteVertex> vertices;
-  TurnCost turns;  // energy and time of all turns and stops
+  TurnEffort turns;  // energy and time of all turns and stops
 
  private:
   // Vertex at `at` with the properties of the cell that contains `inside`, for the heading.
@@ -175,10 +175,10 @@ class Annotator {
       vertex.slope_along_rad = std::atan(slope.along);
       vertex.slope_across_rad = std::atan(slope.across);
       vertex.slip = static_cast<double>(state_.slip);
-      const costmap::SlopeHold hold = input_.map.cost().hold(code, heading);
-      vertex.slip_angle_rad = how_.reverse ? -hold.slip_angle_rad : hold.slip_angle_rad;
-      vertex.side_force_over_load = hold.side_force_over_load;
-      vertex.stability_margin_rad = hold.stability_margin_rad;
+      const auto angle_rad = static_cast<double>(state_.slip_angle_rad);
+      vertex.slip_angle_rad = how_.reverse ? -angle_rad : angle_rad;
+      vertex.side_force_over_load = static_cast<double>(state_.side_force_over_load);
+      vertex.stability_margin_rad = static_cast<double>(state_.stability_margin_rad);
       vertex.sinkage_m = static_cast<double>(state_.sinkage_m);
       vertex.torque_Nm = static_cast<double>(state_.torque_Nm);
       vertex.drawbar_pull_margin = static_cast<double>(state_.pull_margin);
@@ -248,7 +248,7 @@ class Annotator {
     max_slip_angle_rad_ = std::fmax(max_slip_angle_rad_, std::abs(vertex.slip_angle_rad));
   }
 
-  void spend(const TurnCost& price, double times) {
+  void spend(const TurnEffort& price, double times) {
     energy_J_ += price.energy_J * times;
     time_s_ += price.time_s * times;
     turns.energy_J += price.energy_J * times;
@@ -323,7 +323,7 @@ void setRisk(Route& route, const costmap::CostGrid& map, const ProgressMonitor& 
 }
 
 // Replaces energy and time by those of the drives that arrive, those of vertices in proportion. Turns are certain.
-void setForecast(Route& route, const costmap::CostGrid& map, const TurnCost& turns) {
+void setForecast(Route& route, const costmap::CostGrid& map, const TurnEffort& turns) {
   const RouteForecast drive = routeForecast(route, map, riskOptions(map));
   const auto set = [&](double RouteVertex::*of, double& total, double certain, const DriveEffort& effort) {
     const double ratio = total > 0.0 && effort.mean > 0.0 ? (effort.mean + certain) / total : 1.0;

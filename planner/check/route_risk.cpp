@@ -27,6 +27,7 @@ struct Stretch {
   // Class number in order of first occurrence on the route, so that other declared classes do not change the
   // draws.
   std::size_t soil;
+  int soil_class;
   double correlation;  // of the remaining variance with that of the previous stretch
 };
 
@@ -59,6 +60,7 @@ std::vector<Stretch> stretches(const Route& route, const RouteRiskOptions& optio
                     .beta = reliabilityIndex(weak),
                     .shared = a.shared_variance_share,
                     .soil = soil,
+                    .soil_class = a.soil_class,
                     .correlation = follows ? std::exp(-std::max(here_m - middle_m, options.cell_m) /
                                                       options.correlation_length_m)
                                            : 0.0});
@@ -269,6 +271,19 @@ RouteRiskOptions riskOptions(const costmap::CostGrid& map) {
   return options;
 }
 
+namespace {
+
+// Share of the difference between fresh ground and ruts of the mean stiffness that ruts of the stiffness r make, u
+// standard deviations from the mean: (1/sqrt(r) - 1/sqrt(mean)) / (1 - 1/sqrt(mean)), because resistance falls as
+// 1/sqrt(r) (terramech::rutted()).
+double freshShare(const terramech::Estimate& stiffness, double u) {
+  if (!(stiffness.value > 1.0)) return 0.0;
+  const double mean = 1.0 / std::sqrt(stiffness.value);
+  return (1.0 / std::sqrt(std::max(1.0, stiffness.value + u * stiffness.std)) - mean) / (1.0 - mean);
+}
+
+}  // namespace
+
 // Drives in pairs of opposite departures, whose errors cancel in the mean.
 RouteForecast routeForecast(const Route& route, const costmap::CostGrid& map,
                             const RouteRiskOptions& options) {
@@ -277,17 +292,24 @@ RouteForecast routeForecast(const Route& route, const costmap::CostGrid& map,
   std::vector<costmap::TravelForecast> along;
   for (const Stretch& stretch : way) along.push_back(forecastOn(stretch, route, map));
   Worlds worlds(way, options.seed);
+  const std::vector<terramech::Estimate>& ruts = map.cost().uncertainty().ruts;
+  std::mt19937_64 random(options.seed + 1);
+  std::normal_distribution<double> gauss;
+  std::vector<double> rut_departure(ruts.size()), fresh(ruts.size() + 1);  // by class; the last: without ruts
   std::array<std::vector<double>, 2> energy_J, time_s;  // of drives that arrive, and that fail
   const auto pairs = std::clamp<std::size_t>(4'000'000 / way.size(), 50, 500);
   for (std::size_t pair = 0; pair < pairs; ++pair) {
     const std::vector<double>& departure = worlds.any();
+    for (double& u : rut_departure) u = gauss(random);
     for (const double sign : {1.0, -1.0}) {
       double energy = 0.0, time = 0.0;
       bool fails = false;
+      for (std::size_t c = 0; c < ruts.size(); ++c) fresh[c] = freshShare(ruts[c], sign * rut_departure[c]);
       for (std::size_t k = 0; k < way.size(); ++k) {
-        const double u = sign * departure[k];
-        energy += valueAt(along[k].energy_J_per_m, u);
-        time += valueAt(along[k].time_s_per_m, u);
+        const double u = sign * departure[k],
+                     rut = fresh[std::min(static_cast<std::size_t>(way[k].soil_class), ruts.size())];
+        energy += valueAt(along[k].energy_J_per_m, u) * (1.0 + rut * (along[k].fresh_energy - 1.0));
+        time += valueAt(along[k].time_s_per_m, u) * (1.0 + rut * (along[k].fresh_time - 1.0));
         fails = fails || u < along[k].fails_below;
       }
       energy_J[fails ? 1 : 0].push_back(energy);

@@ -67,7 +67,7 @@ struct RouteForecast {
 };
 
 /// Returns the forecast of a route on a map from up to 1000 drives by the distribution of the strength of
-/// riskAlong() (costmap::TravelForecast). Drives that fail are left out, unless all do. Deterministic.
+/// riskAlong() (costmap::TravelForecast) and of the stiffness of the ruts of each class. Drives that fail are left out, unless all do. Deterministic.
 RouteForecast routeForecast(const Route& route, const costmap::CostGrid& map,
                             const RouteRiskOptions& options);
 

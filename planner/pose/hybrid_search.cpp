@@ -131,7 +131,7 @@ class HybridAStar {
     const Node from = nodes_[index];
     for (const auto& motion : motions_.from(from.heading)) {
       const double cost = static_cast<double>(from.cost) + motions_.quickCost(motion, from.place) +
-                          (from.direction * motion.direction < 0 ? problem_.kinematics.cusp.cost_J : 0.0);
+                          (from.direction * motion.direction < 0 ? cost_.cusp_J() : 0.0);
       if (cost >= best_cost_) continue;
       const int way = motion.direction == 0 ? from.direction : motion.direction;
       offer({.place = {from.place.x_m + motion.dx_m, from.place.y_m + motion.dy_m},
@@ -165,7 +165,7 @@ class HybridAStar {
   // Lowest cost at the node's cell and heading; separately by direction of travel if a cusp has a cost.
   float& best(const Node& node) {
     const maps::Grid& grid = problem_.map->grid();
-    const bool apart = problem_.kinematics.cusp.cost_J > 0.0 && node.direction < 0;
+    const bool apart = cost_.cusp_J() > 0.0 && node.direction < 0;
     return table_.at(grid.index(*grid.cellAt(node.place)),
                      static_cast<std::size_t>(node.heading + (apart ? options_.headings : 0)));
   }
@@ -191,7 +191,7 @@ class HybridAStar {
     PosePath rest{.start = poseOf(node), .legs = {}};
     rest.legs = cost_.direct(rest.start, {problem_.goal, goal_heading_rad});
     const bool turns = !rest.legs.empty() && node.direction * direction(rest.legs.front()) < 0;
-    const double so_far = static_cast<double>(node.cost) + (turns ? problem_.kinematics.cusp.cost_J : 0.0);
+    const double so_far = static_cast<double>(node.cost) + (turns ? cost_.cusp_J() : 0.0);
     if (so_far + cheapest_J_per_m_ * length_m(rest) >= best_cost_) return;
     const double cost = so_far + cost_(rest);
     if (cost >= best_cost_) return;
@@ -337,9 +337,11 @@ double MotionSet::quickCost(const Motion& motion, maps::Point from) const noexce
     sum += static_cast<double>(metre_J) * stretch.length_m;
   }
   if (motion.turn_rad == 0.0) return sum;
-  const TurnCosts& turns = kinematics_.turnsOn(code(0.0, 0.0).curve());
-  if (motion.direction == 0) return sum + kinematics_.stop.cost_J + turns.in_place.cost_J * motion.turn_rad;
-  return sum + turns.on_arc.cost_J * motion.turn_rad;
+  const costmap::TravelCost& cost = map_.cost();
+  const TurnEfforts& turns = kinematics_.turnsOn(code(0.0, 0.0).curve());
+  if (motion.direction == 0)
+    return sum + cost.cost_J(kinematics_.stop) + cost.cost_J(turns.in_place) * motion.turn_rad;
+  return sum + cost.cost_J(turns.on_arc) * motion.turn_rad;
 }
 
 bool mayBeDriven(const costmap::CostGrid& map, const PosePath& path, const Kinematics& kinematics) {

@@ -89,7 +89,7 @@ class Turning {
         made.price = ends_.start_rad ? turnPrice(a, *ends_.start_rad, made.heading_rad) : 0.0;
       } else {
         for (const Arrival& before : arrivals_[from]) {
-          const double cusp = before.length_m * made.length_m < 0.0 ? cost_.kinematics().cusp.cost_J : 0.0;
+          const double cusp = before.length_m * made.length_m < 0.0 ? cost_.cusp_J() : 0.0;
           if (before.price + cusp >= made.price) continue;
           const double price = before.price + cusp + turnPrice(a, before.heading_rad, made.heading_rad);
           if (price < made.price) made.price = price, made.before = &before;
@@ -231,7 +231,7 @@ class Shortening {
     Pose pose = joints_[from].pose;
     for (const auto& leg : legs) {
       const int now = direction(leg);
-      if (now * way < 0) price += cost_.kinematics().cusp.cost_J;
+      if (now * way < 0) price += cost_.cusp_J();
       if (now != 0) way = now;
       price += cheapest_J_per_m_ * std::abs(leg.arc.length_m);
     }

@@ -66,42 +66,32 @@ void levelBeyond(float* row, double limit, double most) {
   }
 }
 
-TravelCurve withoutPitch(TravelCurve curve, double limit, double most) {
-  levelBeyond(curve.cost_J_per_m.data(), limit, most);
-  if (!curve.crossing) return curve;
-  auto rows = std::make_shared<std::vector<float>>(*curve.crossing);
-  for (std::size_t row = 0; row < rows->size(); row += TravelCurve::kBins)
-    levelBeyond(rows->data() + row, limit, most);
-  curve.crossing = std::move(rows);
-  return curve;
+TravelCurve withoutPitch(const TravelCurve& curve, double limit, double most) {
+  std::vector<float> costs = *curve.costs;
+  for (std::size_t row = 0; row < costs.size(); row += TravelCurve::kBins)
+    levelBeyond(costs.data() + row, limit, most);
+  return TravelCurve(std::move(costs));
 }
 
-TravelCurve withoutRoll(TravelCurve curve, double limit) {
-  if (!curve.crossing) return curve;
-  const auto kept = static_cast<std::size_t>(
-      std::min(limit * TravelCurve::kRowsPerUnit, static_cast<double>(curve.lastRow())));
-  curve.crossing = std::make_shared<std::vector<float>>(
-      curve.crossing->begin(),
-      curve.crossing->begin() + static_cast<std::ptrdiff_t>((kept + 1) * TravelCurve::kBins));
-  return curve;
+TravelCurve withoutRoll(const TravelCurve& curve, double limit) {
+  const auto kept =
+      static_cast<int>(std::min(limit * TravelCurve::kRowsPerUnit, static_cast<double>(curve.lastRow())));
+  return TravelCurve({curve.rows(), curve.rows() + (kept + 1) * TravelCurve::kBins});
 }
 
 // Curve of ground with unlimited strength: equal cost at all nodes except those at which the rover tips.
 TravelCurve withoutSoil(const TravelCost::Limits& limits) {
   const int rows =
       limits.stance ? static_cast<int>(std::min(limits.max_across, 1.0) * TravelCurve::kRowsPerUnit) + 2 : 1;
-  auto costs = std::make_shared<std::vector<float>>();
+  std::vector<float> costs;
   for (int row = 0; row < rows; ++row)
     for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
       const terramech::Gradient gradient{TravelCurve::gradient(bin),
                                          static_cast<double>(row) / TravelCurve::kRowsPerUnit};
       const bool tips = limits.stance && limits.stance->stabilityMargin_rad(demandOf(gradient)) < 0.0;
-      costs->push_back(tips ? kBlocked : 1.0F);
+      costs.push_back(tips ? kBlocked : 1.0F);
     }
-  TravelCurve curve;
-  std::copy_n(costs->begin(), TravelCurve::kBins, curve.cost_J_per_m.begin());
-  if (rows > 1) curve.crossing = std::move(costs);
-  return curve;
+  return TravelCurve(std::move(costs));
 }
 
 // Returns the gradient at which the slope requires the complete pull that the soil provides at the limit;

@@ -371,7 +371,7 @@ class PointSearchRun {
     const bool shared = side == Side::kInside || of_.free(map_.at(beyond(cell, side)));
     const bool must_share = node % per_cell_ >= loose() && side != Side::kInside;
     const std::uint32_t slot = slotOf(cell);
-    const double turn_J = map_.cost().turn(code).cost_J;
+    const double turn_J = map_.cost().cost_J(map_.cost().turn(code));
     const float label = labels_[node];
     for (int to = 0; to < Side::kSides; ++to) {
       const Cell other = to == Side::kInside ? cell : beyond(cell, to);

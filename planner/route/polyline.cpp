@@ -318,7 +318,7 @@ double MotionCost::turn(maps::Point place, costmap::Direction from, costmap::Dir
   if (!cell) return 0.0;
   const costmap::TravelCost& cost = map_->cost();
   const costmap::CellCode code = map_->at(*cell);
-  const double radian_J = cost.turn(code).cost_J;
+  const double radian_J = cost.cost_J(cost.turn(code));
   if (radian_J == 0.0 && !cost.mayTip(code)) return 0.0;
   constexpr double kApart_rad = 0.02;
   const auto stands = [&](costmap::Direction heading) { return !cost.tips(code, heading); };

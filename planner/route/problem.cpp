@@ -66,7 +66,7 @@ std::vector<PosePath::Leg> PoseCost::direct(const Pose& from, const Pose& to, bo
   return legs;
 }
 
-const TurnCosts& PoseCost::turnsAt(maps::Point place) const noexcept {
+const TurnEfforts& PoseCost::turnsAt(maps::Point place) const noexcept {
   const auto cell = cost_.map().grid().cellAt(place);
   return cell ? kinematics_.turnsOn(cost_.map().at(*cell).curve()) : kinematics_.turns;
 }
@@ -85,7 +85,7 @@ double PoseCost::arc(const Pose& from, const Arc& arc) const noexcept {
     const Pose next = after(pose, part);
     sum += cost_({pose.place, next.place});
     if (sum == kInfinity) return kInfinity;
-    if (turn_rad > 0.0) sum += turnsAt(pose.place).on_arc.cost_J * turn_rad;
+    if (turn_rad > 0.0) sum += cost_.map().cost().cost_J(turnsAt(pose.place).on_arc) * turn_rad;
     pose = next;
   }
   return sum;
@@ -99,7 +99,8 @@ double PoseCost::turnInPlace(const Pose& from, double turn_rad) const noexcept {
     const double heading = from.heading_rad + turn_rad * k / steps;
     if (!cost_.headingAllowed(from.place, {std::cos(heading), std::sin(heading)})) return kInfinity;
   }
-  return kinematics_.stop.cost_J + turnsAt(from.place).in_place.cost_J * std::abs(turn_rad);
+  const costmap::TravelCost& cost = cost_.map().cost();
+  return cost.cost_J(kinematics_.stop) + cost.cost_J(turnsAt(from.place).in_place) * std::abs(turn_rad);
 }
 
 double PoseCost::operator()(const PosePath& path) const noexcept {
@@ -108,7 +109,7 @@ double PoseCost::operator()(const PosePath& path) const noexcept {
   int last = 0;
   for (const auto& leg : path.legs) {
     const int now = direction(leg);
-    if (now * last < 0) sum += kinematics_.cusp.cost_J;
+    if (now * last < 0) sum += cusp_J();
     if (now != 0) last = now;
     sum += (*this)(pose, leg);
     pose = after(pose, leg);

@@ -57,6 +57,8 @@ class PoseCost {
   /// reversing.
   std::vector<PosePath::Leg> direct(const Pose& from, const Pose& to, bool forward = false) const;
 
+  /// Returns the cost [J] of a change between forward and reverse.
+  double cusp_J() const noexcept { return cost_.map().cost().cost_J(kinematics_.cusp); }
   /// Returns the kinematics of the rover.
   const Kinematics& kinematics() const noexcept { return kinematics_; }
   /// Returns the cost of straight motions.
@@ -65,7 +67,7 @@ class PoseCost {
  private:
   double arc(const Pose& from, const Arc& arc) const noexcept;
   double turnInPlace(const Pose& from, double turn_rad) const noexcept;
-  const TurnCosts& turnsAt(maps::Point place) const noexcept;
+  const TurnEfforts& turnsAt(maps::Point place) const noexcept;
 
   const MotionCost& cost_;
   Kinematics kinematics_;

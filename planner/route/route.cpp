@@ -173,10 +173,7 @@ Kinematics kinematicsOn(const costmap::GroundModel& model, const costmap::Travel
     throw std::invalid_argument(
         "rover '" + rover.name +
         "': turning_radius_m = 0, must be > 0 with steering ackermann; state it in the rover's file");
-  const auto lasting = [&](double time_s) {
-    return costmap::priced(terramech::TurnEffort{rover.hotel_power_W * time_s, time_s}, 1.0,
-                           model.parts().policy.time_weight_W);
-  };
+  const auto lasting = [&](double time_s) { return TurnEffort{rover.hotel_power_W * time_s, time_s}; };
   return {.turning_radius_m = rover.turning_radius_m,
           .turns_by_curve = cost.turns(),
           .cusp = lasting(rover.wheel.radius_m / rover.max_speed_mps),

@@ -45,28 +45,28 @@ Pose after(const Pose& from, const Arc& arc) noexcept;
 /// process.
 std::vector<Arc> shortestForward(const Pose& from, const Pose& to, double radius_m);
 
-using costmap::TurnCost;
-using costmap::TurnCosts;
+using terramech::TurnEffort;
+using terramech::TurnEfforts;
 
 /// Constraints on the curvature of a route, and costs of turning. The default values permit all motions and
 /// free turns.
 struct Kinematics {
   double turning_radius_m = 0.0;  ///< smallest radius of an arc, 0.001 to 1000; 0: the rover turns in place
   bool may_reverse = true;  ///< true: paths of Reeds and Shepp; false: paths of Dubins, without reversing
-  TurnCosts turns{};        ///< costs of one radian on ground without an entry in `turns_by_curve`
-  /// Costs of one radian by kind of ground, indexed by CellCode::curve().
-  std::vector<TurnCosts> turns_by_curve{};
-  TurnCost cusp{};  ///< cost of a change between forward and reverse
-  TurnCost stop{};  ///< cost of one turn in place beside its angle: stop, steer the wheels, restart
+  TurnEfforts turns{};      ///< efforts of one radian on ground without an entry in `turns_by_curve`
+  /// Efforts of one radian by kind of ground, indexed by CellCode::curve().
+  std::vector<TurnEfforts> turns_by_curve{};
+  TurnEffort cusp{};  ///< effort of a change between forward and reverse
+  TurnEffort stop{};  ///< effort of one turn in place beside its angle: stop, steer the wheels, restart
 
-  /// Returns the costs of one radian of turning on a cell with CellCode::curve() = `curve`, the index of the
+  /// Returns the efforts of one radian of turning on a cell with CellCode::curve() = `curve`, the index of the
   /// cost curve of its ground.
-  const TurnCosts& turnsOn(costmap::CellCode::Curve curve) const noexcept {
+  const TurnEfforts& turnsOn(costmap::CellCode::Curve curve) const noexcept {
     return curve < turns_by_curve.size() ? turns_by_curve[curve] : turns;
   }
 };
 
-/// Returns the kinematics of the rover of `model`, with the turning costs of `cost`. A change between forward
+/// Returns the kinematics of the rover of `model`, with the turning efforts of `cost`. A change between forward
 /// and reverse takes the time in which the rover drives one wheel radius. A stop for a turn in place takes 20
 /// s (ours), so that planned routes do not turn at every cell. Throws std::invalid_argument for an Ackermann
 /// rover without a turning radius.

@@ -51,8 +51,10 @@ TurnEfforts turnEfforts(const Rover& rover, const TurningGround& ground) noexcep
   const auto effort = [&](double drive_J, double time_s) {
     return TurnEffort{.energy_J = drive_J + rover.hotel_power_W * time_s, .time_s = time_s};
   };
-  return {.on_arc = effort(scrub_J, row_m / rover.max_speed_mps),
-          .in_place = effort(scrub_J + ground.rolling_J_per_m * rolled_m, swept_m / rover.max_speed_mps)};
+  const TurnEffort on_arc = effort(scrub_J, row_m / rover.max_speed_mps),
+                   in_place =
+                       effort(scrub_J + ground.rolling_J_per_m * rolled_m, swept_m / rover.max_speed_mps);
+  return {on_arc, in_place, rover.turning_radius_m > 0.0 ? on_arc : in_place};
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::terramech {
 
@@ -16,17 +17,6 @@ struct TurningGround {
   /// Bulldozing force B on each wheel that is dragged sideways, in addition, >= 0.
   double bulldozing_N = 0.0;
   double rolling_J_per_m = 0.0;  ///< rolling energy R_m of the whole rover per metre on level ground
-};
-
-/// Energy and time of a turn per radian of heading change, in addition to those of the path length.
-struct TurnEffort {
-  double energy_J = 0.0;  ///< energy [J/rad], >= 0, includes hotel power (power independent of driving)
-  double time_s = 0.0;    ///< time [s/rad], >= 0
-};
-
-/// Efforts of a turn while driving on an arc, and of a turn in place.
-struct TurnEfforts {
-  TurnEffort on_arc, in_place;
 };
 
 /// Returns the bulldozing force [N] on the side face of a wheel that is dragged sideways at the sinkage z =

@@ -29,19 +29,17 @@ using namespace talus::planner;
 using MapPointer = std::shared_ptr<const costmap::CostGrid>;
 
 std::shared_ptr<const costmap::TravelCost> driveCost() {
-  std::vector<costmap::TravelCurve> curves(5);
-  for (std::size_t k = 0; k < curves.size(); ++k) {
-    for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
-      const double g = costmap::TravelCurve::gradient(bin);
-      curves[k].cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(
-          (1.0 + static_cast<double>(k)) * (10.0 + 100.0 * std::fmax(g, 0.0) + 400.0 * g * g));
-    }
-    // Crossing a slope costs 2 % more for each row of 1/64.
-    auto rows = std::make_shared<std::vector<float>>();
+  std::vector<costmap::TravelCurve> curves;
+  for (int k = 0; k < 5; ++k) {
+    std::vector<float> costs;
     for (int row = 0; row <= 20; ++row)
-      for (const float level : curves[k].cost_J_per_m)
-        rows->push_back(level * static_cast<float>(1.0 + 0.02 * row));
-    curves[k].crossing = std::move(rows);
+      for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
+        const double g = costmap::TravelCurve::gradient(bin);
+        const auto level = static_cast<float>((1.0 + k) * (10.0 + 100.0 * std::fmax(g, 0.0) + 400.0 * g * g));
+        // Crossing a slope costs 2 % more for each row of 1/64.
+        costs.push_back(level * static_cast<float>(1.0 + 0.02 * row));
+      }
+    curves.emplace_back(std::move(costs));
   }
   return std::make_shared<costmap::TravelCost>(
       costmap::TravelCost::Limits{.max_along = 0.3, .max_across = 0.3}, curves);

@@ -21,26 +21,34 @@ struct Ground {
 };
 
 inline costmap::TravelCurve curve(const Ground& ground) {
-  costmap::TravelCurve made;
+  std::vector<float> costs;
   for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
     const double g = (bin - costmap::TravelCurve::kBins / 2) / 256.0;
     const double cost = ground.factor * (10.0 + 100.0 * std::max(g, 0.0) + 400.0 * g * g);
-    made.cost_J_per_m[static_cast<std::size_t>(bin)] =
-        static_cast<float>(std::abs(g) <= ground.steepest ? cost : std::numeric_limits<double>::infinity());
+    costs.push_back(
+        static_cast<float>(std::abs(g) <= ground.steepest ? cost : std::numeric_limits<double>::infinity()));
   }
-  return made;
+  return costmap::TravelCurve(std::move(costs));
+}
+
+/// Curve with the cost at(gradient along the heading) and no effect of gradients across.
+template <typename At>
+costmap::TravelCurve curveOf(At at) {
+  std::vector<float> costs;
+  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
+    costs.push_back(static_cast<float>(at(costmap::TravelCurve::gradient(bin))));
+  return costmap::TravelCurve(std::move(costs));
 }
 
 /// Adds a cross slope to a curve: each row of cross slope adds `dearer` times the curve, and rows above
 /// `rows` are refused.
-inline costmap::TravelCurve crossed(costmap::TravelCurve curve, double dearer, int rows) {
-  auto all = std::make_shared<std::vector<float>>();
+inline costmap::TravelCurve crossed(const costmap::TravelCurve& curve, double dearer, int rows) {
+  std::vector<float> all;
   for (int row = 0; row <= rows + 1; ++row)
-    for (const float level : curve.cost_J_per_m)
-      all->push_back(row > rows ? std::numeric_limits<float>::infinity()
-                                : level * static_cast<float>(1.0 + dearer * row));
-  curve.crossing = std::move(all);
-  return curve;
+    for (const float level : curve.level())
+      all.push_back(row > rows ? std::numeric_limits<float>::infinity()
+                               : level * static_cast<float>(1.0 + dearer * row));
+  return costmap::TravelCurve(std::move(all));
 }
 
 /// Five curves: curve k costs k + 1 times curve 0; crossing a slope adds no cost on curve 0 and an
@@ -86,9 +94,9 @@ inline std::shared_ptr<const costmap::CostGrid> plane(
   maps::Raster<costmap::CellCode> cells(
       {.width = side, .height = side, .resolution_m = 1.0, .south_west = {}},
       costmap::CellCode({gradient.x, gradient.y, 0}));
-  costmap::GroundCost ground{.curve = {}, .states = {}};
-  ground.curve.cost_J_per_m.fill(10.0F);
-  ground.turns.at_vertex.cost_J = turn_J;
+  const costmap::GroundCost ground{.curve = curveOf([](double) { return 10.0; }),
+                                   .states = {},
+                                   .turns = {.on_arc = {}, .in_place = {}, .at_vertex = {turn_J, 0.0}}};
   return std::make_shared<costmap::CostGrid>(costmap::flattened(
       cells,
       std::make_shared<costmap::TravelCost>(
@@ -102,7 +110,7 @@ inline std::shared_ptr<const costmap::CostGrid> withTurns(const std::shared_ptr<
   std::vector<costmap::GroundCost> grounds;
   for (const auto& curve : map->cost().curves()) {
     grounds.push_back({.curve = curve, .states = {}});
-    grounds.back().turns.at_vertex.cost_J = turn_J;
+    grounds.back().turns.at_vertex.energy_J = turn_J;
   }
   costmap::CostGrid::Content content = map->content();
   content.cost = std::make_shared<costmap::TravelCost>(map->cost().limits(), grounds);

@@ -15,10 +15,10 @@ inline std::shared_ptr<const costmap::TravelCost> jaggedCost() {
   const auto unit = [&random] { return static_cast<double>(random()) / 4294967296.0; };
   std::vector<costmap::TravelCurve> curves;
   for (int k = 0; k < 6; ++k) {
-    costmap::TravelCurve made = curve({.factor = 1.0 + k, .steepest = 0.1 + 0.1 * k});
-    for (float& value : made.cost_J_per_m) value *= static_cast<float>(1.0 + 0.3 * k * unit());
-    if (k > 3)
-      made.cost_J_per_m[static_cast<std::size_t>(costmap::TravelCurve::kBins / 2 + 7 * k)] = INFINITY;
+    std::vector<float> costs = *curve({.factor = 1.0 + k, .steepest = 0.1 + 0.1 * k}).costs;
+    for (float& value : costs) value *= static_cast<float>(1.0 + 0.3 * k * unit());
+    if (k > 3) costs[static_cast<std::size_t>(costmap::TravelCurve::kBins / 2 + 7 * k)] = INFINITY;
+    const costmap::TravelCurve made(std::move(costs));
     curves.push_back(k % 2 == 0 ? made : crossed(made, 0.05 * k, 22 - k));
   }
   return std::make_shared<costmap::TravelCost>(

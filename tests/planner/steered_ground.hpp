@@ -8,13 +8,11 @@ namespace talus::planner::testing {
 
 /// The test cost in which only gradients along the heading within a band are allowed.
 inline std::shared_ptr<const costmap::TravelCost> onlyAlong(double least, double most) {
-  costmap::TravelCurve allowed = curve({});
-  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
-    const double along = costmap::TravelCurve::gradient(bin);
-    if (along < least || along > most)
-      allowed.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
-  }
-  return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{allowed});
+  const costmap::TravelCurve all = curve({});
+  const auto allowed = [&](double along) {
+    return along < least || along > most ? std::numeric_limits<float>::infinity() : all.price(along, 0.0);
+  };
+  return std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curveOf(allowed)});
 }
 
 /// Nine by nine cells of one metre that fall southwards overall and may only be driven down: every cell has

@@ -86,12 +86,12 @@ WheelExpectation MapExpectation::ofWheel(const maps::Point& place, const maps::P
                                          const costmap::Direction& heading) const {
   const auto cell = map_.grid().cellAt(place);
   const double radius_m = map_.model().rover().wheel.radius_m;
-  return {
-      .slip = static_cast<double>(ofClass(middle, heading).slip),
-      .sinkage_over_radius = static_cast<double>(ofClass(place, heading).sinkage_m) / radius_m,
-      .slip_angle_rad =
-          cell ? std::abs(map_.published()->cost().hold(onSlope(classCurve(*cell)), heading).slip_angle_rad)
-               : 0.0};
+  return {.slip = static_cast<double>(ofClass(middle, heading).slip),
+          .sinkage_over_radius = static_cast<double>(ofClass(place, heading).sinkage_m) / radius_m,
+          .slip_angle_rad =
+              cell ? std::abs(static_cast<double>(
+                         map_.published()->cost().detail(onSlope(classCurve(*cell)), heading).slip_angle_rad))
+                   : 0.0};
 }
 
 costmap::CellCode MapExpectation::onSlope(costmap::CellCode::Curve curve) const {

@@ -465,11 +465,12 @@ terramech::TurnEffort TrueWorld::turn(const costmap::Direction& from, const Moti
   double sinkage = 0.0;
   for (const SimulatedWheel& w : flat.wheels) sinkage = std::max(sinkage, w.forces.sinkage);
   const double rolling = flat.stuck ? 0.0 : flat.energy_J_per_m - rover_.hotel_power_W / flat.speed_mps;
-  const terramech::TurnEfforts efforts = terramech::turnEfforts(
-      rover_, {.lateral_resistance = std::tan(soil.friction_angle_rad),
-               .bulldozing_N = terramech::bulldozing_N(soil, rover_, sinkage * rover_.wheel.radius_m),
-               .rolling_J_per_m = std::max(0.0, rolling)});
-  const terramech::TurnEffort radian = rover_.turning_radius_m > 0.0 ? efforts.on_arc : efforts.in_place;
+  const terramech::TurnEffort radian =
+      terramech::turnEfforts(
+          rover_, {.lateral_resistance = std::tan(soil.friction_angle_rad),
+                   .bulldozing_N = terramech::bulldozing_N(soil, rover_, sinkage * rover_.wheel.radius_m),
+                   .rolling_J_per_m = std::max(0.0, rolling)})
+          .at_vertex;
   return {.energy_J = turned_rad * radian.energy_J, .time_s = turned_rad * radian.time_s};
 }
 

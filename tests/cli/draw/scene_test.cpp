@@ -98,8 +98,7 @@ maps::ElevationMap level() {
 
 // Scene of two places without a connection over the cells.
 Scene severed(const maps::ElevationMap& map, const maps::Raster<costmap::CellCode>& cells) {
-  costmap::TravelCurve curve;
-  curve.cost_J_per_m.fill(1.0F);
+  const costmap::TravelCurve curve(std::vector<float>(costmap::TravelCurve::kBins, 1.0F));
   const costmap::CostGrid cost = costmap::flattened(
       cells, std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve}));
   return reachScene(map, cost, {{{2.5, 3.5}, {27.5, 16.5}}, 0.0, "a wall"}, {.title = "severed"});

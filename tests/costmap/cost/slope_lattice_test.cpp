@@ -196,7 +196,8 @@ TEST(SlopeLattice, TippingSlopesAreInfeasibleAndGentleOnesAllowed) {
         EXPECT_EQ(cost.detail(plane(gentle, 0.0), towards).refusal, Refusal::None) << gentle << ' ' << degree;
     }
     EXPECT_GT(tipped, 12);
-    EXPECT_NEAR(cost.hold(plane(0.3, 0.0), {}).stability_margin_rad, std::atan(tips) - std::atan(0.3), 0.002);
+    EXPECT_NEAR(cost.detail(plane(0.3, 0.0), {}).stability_margin_rad, std::atan(tips) - std::atan(0.3),
+                0.002);
   }
 }
 
@@ -275,8 +276,8 @@ TEST(SlopeLattice, CostOfTwoGroundsIsAtLeastThatOfTheHarder) {
   const auto model = testGround();
   const GroundBelief belief = model->prior(0);
   const TravelCost cost(model->limits(),
-                        std::vector<GroundCost>{model->ground(0, 0, belief), model->ground(1, 1, belief),
-                                                model->ground(0, 1, belief)});
+                        std::vector<GroundCost>{model->ground(0, belief), model->ground(1, belief),
+                                                model->ground(0, belief, 1)});
   for (double along = -0.3; along <= 0.3; along += 0.02)
     for (double across = 0.0; across <= 0.3; across += 0.02) {
       const auto of = [&](std::uint8_t curve) {

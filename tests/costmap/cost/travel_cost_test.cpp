@@ -18,10 +18,17 @@
 namespace talus::costmap {
 namespace travel_cost_test {
 
+// A curve whose cost in each bin is the number of the bin, so that a cost identifies the bin.
+TravelCurve numbered() {
+  std::vector<float> costs;
+  for (int bin = 0; bin < TravelCurve::kBins; ++bin) costs.push_back(static_cast<float>(bin));
+  return TravelCurve(std::move(costs));
+}
+
 CostGrid plain(int side) {
   const maps::Grid grid{.width = side, .height = side, .resolution_m = 1.0, .south_west = {}};
   return flattened(maps::Raster<CellCode>(grid, CellCode({.curve = 0})),
-                   std::make_shared<TravelCost>(TravelCost::Limits{}, std::vector<TravelCurve>(1)));
+                   std::make_shared<TravelCost>(TravelCost::Limits{}, std::vector{numbered()}));
 }
 
 TEST(CostGrid, RevisionChangesOnlyItsRange) {
@@ -129,7 +136,7 @@ TEST(CostWeights, NegativeWeightsAndMapsWithoutStatesAreRejected) {
   const maps::Grid grid{.width = 4, .height = 4, .resolution_m = 1.0, .south_west = {}};
   const CostGrid bare =
       flattened(maps::Raster<CellCode>(grid),
-                std::make_shared<TravelCost>(TravelCost::Limits{}, std::vector<TravelCurve>(1)));
+                std::make_shared<TravelCost>(TravelCost::Limits{}, std::vector{numbered()}));
   EXPECT_REFUSED(reweighted(bare, {}), std::domain_error, "holds no energy, time and risk to weigh");
 }
 
@@ -146,14 +153,6 @@ TEST(LearnedCells, CellsAreStoredAndChangesReported) {
   ASSERT_EQ(cells.boxes().size(), 1U);
   EXPECT_EQ(cells.boxes()[0].first, (maps::Cell{70, 5}));
   EXPECT_EQ(cells.boxes()[0].last, (maps::Cell{75, 9}));
-}
-
-// A curve whose cost in each bin is the number of the bin, so that a cost identifies the bin.
-TravelCurve numbered() {
-  TravelCurve curve{};
-  for (int bin = 0; bin < TravelCurve::kBins; ++bin)
-    curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(bin);
-  return curve;
 }
 
 Direction towards(double heading_rad) {
@@ -182,12 +181,11 @@ TEST(CellCode, GradientsAreRoundedToHalfAStepAndClamped) {
 TEST(TravelCost, CostIsBilinearAndInfiniteIfOneNodeIsInfeasible) {
   std::mt19937 random(7);
   constexpr int kRows = 30;
-  auto rows = std::make_shared<std::vector<float>>();
+  std::vector<float> rows;
   for (int i = 0; i < kRows * TravelCurve::kBins; ++i)
-    rows->push_back(random() % 20 == 0 ? std::numeric_limits<float>::infinity()
-                                       : static_cast<float>(random() % 1000));
-  TravelCurve curve = numbered();
-  curve.crossing = rows;
+    rows.push_back(random() % 20 == 0 ? std::numeric_limits<float>::infinity()
+                                      : static_cast<float>(random() % 1000));
+  const TravelCurve curve(rows);
   std::uniform_real_distribution<double> gradient(-0.9, 0.9);
   int refused = 0, allowed = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -202,9 +200,9 @@ TEST(TravelCost, CostIsBilinearAndInfiniteIfOneNodeIsInfeasible) {
         const double weight = (dx == 1 ? fx : 1.0 - fx) * (dy == 1 ? fy : 1.0 - fy);
         if (weight <= 0.0) continue;
         const int row = std::min(static_cast<int>(std::floor(y)) + dy, kRows - 1);
-        want += weight *
-                static_cast<double>(
-                    (*rows)[static_cast<std::size_t>(row * TravelCurve::kBins + static_cast<int>(x) + dx)]);
+        want +=
+            weight * static_cast<double>(
+                         rows[static_cast<std::size_t>(row * TravelCurve::kBins + static_cast<int>(x) + dx)]);
       }
     const float price = curve.price(along, across);
     ASSERT_EQ(std::isinf(price), std::isinf(want)) << along << ' ' << across;
@@ -247,7 +245,7 @@ TEST(TravelCost, TipsIfTheCentreOfMassProjectsOutsideTheWheels) {
   rover.track_m = 1.1;
   rover.centre_of_mass_height_m = 0.9;
   const TravelCost cost({.stance = std::make_shared<const terramech::RoverStance>(rover)},
-                        std::vector<TravelCurve>(1));
+                        std::vector{numbered()});
   std::mt19937 random(5);
   std::uniform_real_distribution<double> gradient(-0.9, 0.9), angle(-3.2, 3.2);
   int tipped = 0;
@@ -270,8 +268,8 @@ TEST(TravelCost, TipsIfTheCentreOfMassProjectsOutsideTheWheels) {
 }
 
 TEST(TravelCost, CurveCountIsLimitedByTheCellCode) {
-  EXPECT_NO_THROW(TravelCost({}, std::vector<TravelCurve>(254)));
-  EXPECT_THROW(TravelCost({}, std::vector<TravelCurve>(65535)), std::invalid_argument);
+  EXPECT_NO_THROW(TravelCost({}, std::vector(254, numbered())));
+  EXPECT_THROW(TravelCost({}, std::vector(65535, numbered())), std::invalid_argument);
 }
 
 }  // namespace travel_cost_test

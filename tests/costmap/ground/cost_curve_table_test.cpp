@@ -183,25 +183,25 @@ bool noBetter(const GroundBelief& belief, const GroundBelief& than) {
 }
 
 // Property: the rounded estimate is no better than the exact one in any quantity, and rounds to itself.
-TEST(GroundKind, RoundingIsConservative) {
+TEST(RoundedGround, RoundingIsConservative) {
   std::mt19937_64 random(3);
   const GroundClass ground{.soil = testSand()};
   for (int i = 0; i < 5000; ++i) {
     const GroundBelief belief = anyBelief(random);
-    const GroundKind kind = GroundKind::of(kPrior, 0, 0, belief);
-    const GroundBelief worst = kind.belief(kPrior, ground);
+    const GroundBelief worst = rounded(belief, kPrior, ground);
     // A difference of a millionth of a step is floating-point rounding.
     GroundBelief a_little_better = belief;
     a_little_better.pull.value += 1e-6;
     a_little_better.pull.std -= 1e-5;
     a_little_better.sinkage.value -= 1e-6;
     ASSERT_TRUE(noBetter(worst, a_little_better)) << i;
-    ASSERT_EQ(GroundKind::of(kPrior, 0, 0, worst), kind);
+    const GroundBelief again = rounded(worst, kPrior, ground);
+    ASSERT_TRUE(noBetter(worst, again) && noBetter(again, worst));
   }
 }
 
 // Property: an estimate no worse than the prior of its class is rounded to a value no worse than the prior.
-TEST(GroundKind, RoundingNeverFallsBelowThePrior) {
+TEST(RoundedGround, RoundingNeverFallsBelowThePrior) {
   std::mt19937_64 random(4);
   const GroundClass ground{.soil = testSand()};
   for (int i = 0; i < 2000; ++i) {
@@ -210,7 +210,7 @@ TEST(GroundKind, RoundingNeverFallsBelowThePrior) {
     };
     const GroundBelief belief{.pull = {kPrior.pull.value + better(0.1), kPrior.pull.std - better(0.05)},
                               .sinkage = {kPrior.sinkage.value - better(0.2), 0.1}};
-    ASSERT_TRUE(noBetter(kPrior, GroundKind::of(kPrior, 0, 0, belief).belief(kPrior, ground)));
+    ASSERT_TRUE(noBetter(kPrior, rounded(belief, kPrior, ground)));
   }
 }
 
@@ -252,7 +252,7 @@ TEST(CostCurveTable, TabulatedCostIsNeverBelowTheExactCost) {
     if (i % 10 != 0) continue;
     const TravelCurve exact = model->ground(index, belief).curve;
     for (std::size_t bin = 0; bin < TravelCurve::kBins; ++bin)
-      ASSERT_GE(table.cost()->curves()[number].cost_J_per_m[bin], 0.995F * exact.cost_J_per_m[bin])
+      ASSERT_GE(table.cost()->curves()[number].level()[bin], 0.995F * exact.level()[bin])
           << i << " at gradient " << TravelCurve::gradient(static_cast<int>(bin));
   }
 }
@@ -273,8 +273,7 @@ TEST(CostCurveTable, ClassCostIsComputedOnFirstRequest) {
   const auto before = table.cost();
   ASSERT_EQ(table.prior(1), 1);
   EXPECT_NE(table.cost(), before);
-  EXPECT_EQ(table.cost()->curves()[1].cost_J_per_m,
-            model->ground(1, table.priorBelief(1)).curve.cost_J_per_m);
+  EXPECT_EQ(*table.cost()->curves()[1].costs, *model->ground(1, table.priorBelief(1)).curve.costs);
   EXPECT_LE(table.priorBelief(1).pull.value, weaker.pull.value);
 }
 
@@ -296,12 +295,12 @@ TEST(CostCurveTable, RestoredPriorReproducesItsCosts) {
   const GroundBelief low{.pull = {0.2, 0.06}, .sinkage = {0.2, 0.1}};
   const GroundBelief high{.pull = {0.21, 0.06}, .sinkage = {0.2, 0.1}};
   ASSERT_TRUE(book.setPrior(0, low));
-  const auto first = book.cost()->curves()[0].cost_J_per_m;
+  const auto first = *book.cost()->curves()[0].costs;
   ASSERT_TRUE(book.setPrior(0, high));
-  const auto between = book.cost()->curves()[0].cost_J_per_m;
+  const auto between = *book.cost()->curves()[0].costs;
   ASSERT_TRUE(book.setPrior(0, low));
   EXPECT_FALSE(book.setPrior(0, low));
-  EXPECT_EQ(book.cost()->curves()[0].cost_J_per_m, first);
+  EXPECT_EQ(*book.cost()->curves()[0].costs, first);
   EXPECT_NE(between, first);
 }
 

@@ -63,11 +63,8 @@ TEST(DirectionalCostBounds, GaugeIsBelowTheCost) {
 // Property: for a cost that is smooth and convex over headings, the limits are within half a percent of the
 // cost.
 TEST(DirectionalCostBounds, LimitsAreTightForASmoothCost) {
-  costmap::TravelCurve curve;
-  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
-    const double g = costmap::TravelCurve::gradient(bin);
-    curve.cost_J_per_m[static_cast<std::size_t>(bin)] = static_cast<float>(10.0 + 20.0 * g + 40.0 * g * g);
-  }
+  const costmap::TravelCurve curve =
+      testing::curveOf([](double g) { return 10.0 + 20.0 * g + 40.0 * g * g; });
   const costmap::TravelCost cost({.max_along = 0.9, .max_across = 0.9}, std::vector{curve});
   DirectionalCostBounds headings(cost);
   std::mt19937 random(5);

@@ -161,8 +161,7 @@ TEST(AdmissibleEdges, StopYieldsNoEdges) {
 }
 
 TEST(AdmissibleEdges, ZeroCostGroundYieldsNoEdges) {
-  costmap::TravelCurve free_of_charge;
-  free_of_charge.cost_J_per_m.fill(0.0F);
+  const costmap::TravelCurve free_of_charge = testing::curveOf([](double) { return 0.0; });
   const maps::Raster<costmap::CellCode> cells(
       {.width = 3, .height = 3, .resolution_m = 1.0, .south_west = {}}, costmap::CellCode({.curve = 0}));
   const auto cost =
@@ -288,11 +287,9 @@ TEST(LowerBound, ToleranceLowersTheBound) {
 // Closed form: 50 m along a track of 1 J/m cost 50 J, although climbing on the track costs a thousand times
 // as much and the ground beside the track ten times as much.
 TEST(LowerBound, BoundIsValidIfSlopeCostDominatesRollingCost) {
-  costmap::TravelCurve track, ground;
-  ground.cost_J_per_m.fill(10.0F);
-  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
-    track.cost_J_per_m[static_cast<std::size_t>(bin)] =
-        static_cast<float>(std::max(0.1, 1.0 + 1000.0 * costmap::TravelCurve::gradient(bin)));
+  const costmap::TravelCurve ground = testing::curveOf([](double) { return 10.0; }),
+                             track =
+                                 testing::curveOf([](double g) { return std::max(0.1, 1.0 + 1000.0 * g); });
   maps::Raster<costmap::CellCode> cells({.width = 60, .height = 20, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.curve = 1}));
   for (int column = 0; column < 60; ++column) cells[{column, 10}] = costmap::CellCode({.curve = 0});

@@ -191,7 +191,7 @@ std::shared_ptr<const costmap::CostGrid> withRisk(const std::vector<std::string>
     state.risk_per_m = static_cast<float>(risk);
     auto table = std::make_shared<costmap::TabulatedStates>(
         std::vector<costmap::TravelState>(costmap::TravelCurve::kBins, state));
-    return costmap::GroundCost{.curve = {}, .states = table};
+    return costmap::GroundCost{.curve = table->curve({}), .states = table};
   };
   auto content = testing::drawn(rows)->content();
   content.cost = std::make_shared<costmap::TravelCost>(

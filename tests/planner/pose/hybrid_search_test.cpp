@@ -168,7 +168,8 @@ TEST(HybridSearch, TurningInPlaceNegotiatesNarrowCorners) {
   auto corner = problem(drawn({"#####", "#...#", "#.#.#", "#.#.#", "#####"}));
   corner.start = {1.5, 1.5};
   corner.goal = {3.5, 1.5};
-  corner.kinematics = {.turning_radius_m = 0.0, .turns = {.on_arc = {}, .in_place = {.cost_J = 1.0}}};
+  corner.kinematics = {.turning_radius_m = 0.0,
+                       .turns = {.on_arc = {}, .in_place = {.energy_J = 1.0}, .at_vertex = {}}};
   const PosePlan plan = search.plan(corner);
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
   EXPECT_GT(shape(plan.path).turns_in_place, 0);

@@ -19,9 +19,10 @@ Problem across(const std::shared_ptr<const costmap::CostGrid>& map, double radiu
           .start = {2.5, 2.5},
           .goal = {37.5, 35.5},
           .kinematics = {.turning_radius_m = radius_m,
-                         .turns = {.on_arc = {.cost_J = 2.0, .energy_J = 2.0, .time_s = 1.0},
-                                   .in_place = {.cost_J = 5.0, .energy_J = 4.0, .time_s = 1.0}},
-                         .cusp = {.cost_J = 3.0, .energy_J = 3.0, .time_s = 0.5}}};
+                         .turns = {.on_arc = {.energy_J = 1.0, .time_s = 1.0},
+                                   .in_place = {.energy_J = 4.0, .time_s = 1.0},
+                                   .at_vertex = {}},
+                         .cusp = {.energy_J = 2.5, .time_s = 0.5}}};
 }
 
 // Whether the exact arcs, sampled every hundredth of a metre, are allowed in the heading of each point.
@@ -129,11 +130,11 @@ TEST(PosePlanner, ReportCountsTurns) {
   problem.goal = {12.5, 2.5};
   problem.start_heading_rad = std::numbers::pi / 2;
   problem.kinematics.may_reverse = false;
-  problem.kinematics.stop = {.cost_J = 7.0, .energy_J = 6.0, .time_s = 2.0};  // cost of the stop as well
-  problem.kinematics.turns.on_arc.cost_J = 50.0;                              // makes every arc too expensive
+  problem.kinematics.stop = {.energy_J = 6.0, .time_s = 2.0};  // cost of the stop as well
+  problem.kinematics.turns.on_arc.energy_J = 50.0;             // makes every arc too expensive
   const Plan plan = PosePlanner().plan(problem);
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;
-  EXPECT_NEAR(plan.cost_J, 107.0 + 5.0 * std::numbers::pi / 2, 1e-3);
+  EXPECT_NEAR(plan.cost_J, 108.0 + 5.0 * std::numbers::pi / 2, 1e-3);
   const Route route = annotated(plan, {.map = *map, .kinematics = problem.kinematics});
   EXPECT_NEAR(route.energy_J, 6.0 + 4.0 * std::numbers::pi / 2,
               1e-9);  // the drawn map has no energy table
@@ -153,7 +154,7 @@ TEST(PosePlanner, ArcIsPreferredToAStopForACheapBend) {
   Problem problem = across(testing::drawn(rows), 0.0);
   problem.start = {2.5, 6.5};
   problem.goal = {17.5, 21.5};
-  problem.kinematics.stop = {.cost_J = 100.0};
+  problem.kinematics.stop = {.energy_J = 100.0};
   const Plan route = FieldPlanner().plan(problem);
   const Plan plan = PosePlanner().plan(problem);
   ASSERT_EQ(plan.status, RouteStatus::Found) << plan.reason;

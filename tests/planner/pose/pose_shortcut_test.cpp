@@ -16,8 +16,8 @@ std::shared_ptr<const costmap::CostGrid> plain() {
 TEST(TurningDrive, SmallHeadingChangesYieldNoStop) {
   const MotionCost motion(plain());
   const std::vector<maps::Point> wiggle{{1.5, 1.5}, {3.5, 1.7}, {5.5, 1.4}, {7.5, 1.6}, {9.5, 1.5}};
-  const PoseCost dear(motion,
-                      {.turns = {.on_arc = {}, .in_place = {.cost_J = 1.0}}, .stop = {.cost_J = 20.0}});
+  const PoseCost dear(motion, {.turns = {.on_arc = {}, .in_place = {.energy_J = 1.0}, .at_vertex = {}},
+                               .stop = {.energy_J = 20.0}});
   const PosePath straight = turningPath(wiggle, {}, dear);
   EXPECT_EQ(shape(straight).turns_in_place, 0);
   EXPECT_NEAR(dear(straight), 80.0, 1e-9);  // Closed form: 8 m at 10 J/m
@@ -27,8 +27,8 @@ TEST(TurningDrive, TurnsInPlaceOnlyWhereRequired) {
   auto rows = std::vector<std::string>(20, std::string(20, '.'));
   for (std::size_t r = 8; r < 19; ++r) rows[r][10] = '#';  // a wall from the south to the last row but one
   const MotionCost motion(testing::drawn(rows));
-  const PoseCost cost(motion,
-                      {.turns = {.on_arc = {}, .in_place = {.cost_J = 1.0}}, .stop = {.cost_J = 20.0}});
+  const PoseCost cost(motion, {.turns = {.on_arc = {}, .in_place = {.energy_J = 1.0}, .at_vertex = {}},
+                               .stop = {.energy_J = 20.0}});
   const std::vector<maps::Point> around{{5.5, 5.5},   {8.0, 9.5},  {9.0, 12.5},
                                         {12.0, 12.5}, {13.0, 9.5}, {15.5, 5.5}};
   const PosePath drive = turningPath(around, {.start_rad = 0.0, .goal_rad = 0.0}, cost);
@@ -43,7 +43,7 @@ TEST(TurningDrive, TurnsInPlaceOnlyWhereRequired) {
 
 TEST(TurningDrive, ReversesIfTurningIsCostlier) {
   const MotionCost motion(plain());
-  Kinematics kinematics{.turns = {.on_arc = {}, .in_place = {.cost_J = 30.0}}};
+  Kinematics kinematics{.turns = {.on_arc = {}, .in_place = {.energy_J = 30.0}, .at_vertex = {}}};
   const std::vector<maps::Point> west{{10.5, 5.5}, {5.5, 5.5}};
   const PosePath backed = turningPath(west, {.start_rad = 0.0, .goal_rad = {}}, PoseCost(motion, kinematics));
   EXPECT_LT(backed.legs.front().arc.length_m, 0.0);
@@ -98,7 +98,8 @@ TEST(PoseShortcut, EndsAreKeptAndCostNeverIncreases) {
       const auto map =
           randomMap({.width = 40, .height = 20, .seed = seed, .blocked = 0.0, .roughness = 0.15});
       const MotionCost motion(map);
-      const PoseCost cost(motion, {.turning_radius_m = 2.0, .may_reverse = reverse, .cusp = {.cost_J = 3.0}});
+      const PoseCost cost(motion,
+                          {.turning_radius_m = 2.0, .may_reverse = reverse, .cusp = {.energy_J = 3.0}});
       PosePath drive = weaving(12);
       if (reverse) drive.legs.insert(drive.legs.begin() + 9, {{{-1.5, 0.0}, 0.0}, {{1.5, 0.0}, 0.0}});
       const PosePath made = shortened(drive, cost, {.joint_m = 3.0, .cheapest_J_per_m = 1.0});

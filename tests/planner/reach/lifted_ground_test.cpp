@@ -211,13 +211,8 @@ TEST(LiftedGround, TippingIsNotAttributedToTheSoil) {
       .max_along = 0.15, .max_across = 0.9, .stance = std::make_shared<const terramech::RoverStance>(rover)};
   Site ground = site(std::vector<std::string>(9, "........."), 0.3, 0.15, 0.6);
   costmap::CostGrid::Content content = ground.map->content();
-  costmap::TravelCurve curve = upTo(0.155, 10.0);
-  const costmap::TravelCurve level = curve;
-  auto rows = std::make_shared<std::vector<float>>();
-  for (int row = 0; row < 60; ++row)  // refused across from 0.25 on, where the rover tips
-    for (const float cost : level.cost_J_per_m)
-      rows->push_back(row < 16 ? cost : std::numeric_limits<float>::infinity());
-  curve.crossing = rows;
+  // Refused across from 0.25 on, where the rover tips.
+  const costmap::TravelCurve curve = testing::crossed(upTo(0.155, 10.0), 0.0, 15);
   content.cost = std::make_shared<costmap::TravelCost>(limits, std::vector{curve});
   ground.map = std::make_shared<costmap::CostGrid>(std::move(content));
   EXPECT_EQ(causeOf(ground, {{1.5, 4.5}, {7.5, 4.5}}), Constraint::Pitch);

@@ -24,13 +24,9 @@ bool reaches(const costmap::CostGrid& map, maps::Point from, maps::Point to) {
 
 // A slope that may only be descended, and not along its contour: bin 0 contains climbs of up to 0.002.
 TEST(Reach, ReachIsDirectional) {
-  costmap::TravelCurve down_only = testing::curve({});
-  for (int bin = costmap::TravelCurve::kBins / 2; bin < costmap::TravelCurve::kBins; ++bin)
-    down_only.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
   maps::Raster<costmap::CellCode> ramp({.width = 4, .height = 3, .resolution_m = 1.0, .south_west = {}},
                                        costmap::CellCode({.dz_dx = 0.2, .dz_dy = 0.0, .curve = 0}));
-  const costmap::CostGrid map = costmap::flattened(
-      ramp, std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{down_only}));
+  const costmap::CostGrid map = costmap::flattened(ramp, testing::onlyAlong(-1.0, -1.0 / 512.0));
   EXPECT_FALSE(reaches(map, {1.5, 1.5}, {3.5, 1.5}));
   EXPECT_TRUE(reaches(map, {3.5, 1.5}, {1.5, 1.5}));
   HeadingSets headings(map.cost());
@@ -43,16 +39,9 @@ TEST(Reach, ReachIsDirectional) {
 TEST(Reach, DescendingHeadingsReachEverythingBelow) {
   const double steep = 0.3;
   // Descents of at most 0.1 along the heading: both directions of the contour and slightly below.
-  costmap::TravelCurve curve = testing::curve({});
-  for (int bin = 0; bin < costmap::TravelCurve::kBins; ++bin) {
-    const double along = costmap::TravelCurve::gradient(bin);
-    if (along > -0.002 || along < -0.1)
-      curve.cost_J_per_m[static_cast<std::size_t>(bin)] = std::numeric_limits<float>::infinity();
-  }
   maps::Raster<costmap::CellCode> plane({.width = 12, .height = 12, .resolution_m = 1.0, .south_west = {}},
                                         costmap::CellCode({.dz_dx = 0.0, .dz_dy = steep, .curve = 0}));
-  const costmap::CostGrid map = costmap::flattened(
-      plane, std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve}));
+  const costmap::CostGrid map = costmap::flattened(plane, testing::onlyAlong(-0.1, -0.002));
   EXPECT_FALSE(reaches(map, {6.0, 5.5}, {6.0, 7.5}));
   EXPECT_TRUE(reaches(map, {6.0, 5.5}, {6.0, 3.5}));
   EXPECT_FALSE(reaches(map, {1.0, 5.5}, {11.0, 5.5}));

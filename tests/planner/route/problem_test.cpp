@@ -34,8 +34,8 @@ TEST(PosePath, ReverseCostEqualsDrivingInThatDirection) {
 
 TEST(PosePath, ArcCostOnUniformGroundIsLengthPlusTurn) {
   const MotionCost motion(drawn({"....", "....", "....", "...."}));
-  const PoseCost cost(motion,
-                      {.turning_radius_m = 2.0, .turns = {.on_arc = {.cost_J = 7.0}, .in_place = {}}});
+  const PoseCost cost(motion, {.turning_radius_m = 2.0,
+                               .turns = {.on_arc = {.energy_J = 7.0}, .in_place = {}, .at_vertex = {}}});
   // Closed form: 10 J/m; chords of 0.1 rad are shorter than their arc by 0.1^2/24.
   EXPECT_NEAR(cost({{0.5, 0.5}, 0.0}, {{std::numbers::pi, 0.5}, 0.0}),
               10.0 * std::numbers::pi + 7.0 * std::numbers::pi / 2, 10.0 * std::numbers::pi * 5e-4);
@@ -49,14 +49,14 @@ TEST(PosePath, TurnInPlaceRequiresEveryHeading) {
                                 .cost = testing::driveCost({.max_along = 0.3, .max_across = 0.1}),
                                 .version = 1});
   const MotionCost motion(std::make_shared<const costmap::CostGrid>(grid));
-  const PoseCost cost(motion, {.turns = {.on_arc = {}, .in_place = {.cost_J = 3.0}}});
+  const PoseCost cost(motion, {.turns = {.on_arc = {}, .in_place = {.energy_J = 3.0}, .at_vertex = {}}});
   EXPECT_TRUE(std::isinf(cost({{0.5, 0.5}, 0.0}, {{}, std::numbers::pi / 2})));
   EXPECT_DOUBLE_EQ(cost({{0.5, 0.5}, 0.0}, {{}, 0.2}), 0.6);
 }
 
 TEST(PosePath, CuspsAreCountedAndPriced) {
   const MotionCost motion(drawn({"....."}));
-  const PoseCost cost(motion, {.turning_radius_m = 1.0, .cusp = {.cost_J = 5.0}});
+  const PoseCost cost(motion, {.turning_radius_m = 1.0, .cusp = {.energy_J = 5.0}});
   const PosePath path{.start = {{1.5, 0.5}, 0.0}, .legs = {{{2.0, 0.0}, 0.0}, {{-1.0, 0.0}, 0.0}}};
   EXPECT_EQ(shape(path).cusps, 1);
   EXPECT_NEAR(cost(path), 35.0, 1e-6);

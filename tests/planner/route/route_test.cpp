@@ -148,14 +148,14 @@ TEST(Kinematics, TurningRadiusHasALowerBound) {
   }
 }
 
-TEST(Kinematics, TurnCostsComeFromTheMapCost) {
+TEST(Kinematics, TurnEffortsComeFromTheMapCost) {
   const auto model = costmap::testGround();
   const costmap::TravelCost cost(model->limits(),
                                  std::vector<costmap::GroundCost>{model->ground(0, model->prior(0))});
   const Kinematics made = kinematicsOn(*model, cost);
   ASSERT_EQ(made.turns_by_curve.size(), 1U);
   EXPECT_GT(made.turnsOn(0).in_place.energy_J, 0.0);
-  EXPECT_EQ(made.turnsOn(0).at_vertex.cost_J, cost.turn(costmap::CellCode({0.0, 0.0, 0})).cost_J);
+  EXPECT_EQ(made.turnsOn(0).at_vertex.energy_J, cost.turn(costmap::CellCode({0.0, 0.0, 0})).energy_J);
 }
 
 TEST(Kinematics, AckermannSteeringRequiresATurningRadius) {

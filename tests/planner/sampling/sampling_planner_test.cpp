@@ -341,10 +341,8 @@ Plan detour(const Problem& leg) {
 
 // The same map with a cost that forbids climbing.
 std::shared_ptr<const costmap::CostGrid> drivenDownOnly(const std::shared_ptr<const costmap::CostGrid>& map) {
-  costmap::TravelCurve curve;
-  for (std::size_t bin = 0; bin < costmap::TravelCurve::kBins; ++bin)
-    curve.cost_J_per_m[bin] =
-        bin > costmap::TravelCurve::kBins / 2 ? std::numeric_limits<float>::infinity() : 10.0F;
+  const costmap::TravelCurve curve = testing::curveOf(
+      [](double gradient) { return gradient > 0.0 ? std::numeric_limits<float>::infinity() : 10.0F; });
   auto content = map->content();
   content.cost = std::make_shared<costmap::TravelCost>(costmap::TravelCost::Limits{}, std::vector{curve});
   return std::make_shared<costmap::CostGrid>(content);

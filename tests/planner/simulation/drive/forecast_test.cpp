@@ -20,7 +20,9 @@ costmap::TraversabilityMap siteOf(double rise, double swell_m) {
     for (int column = 0; column < 36; ++column)
       layers.elevation.elevation_m[{column, row}] +=
           static_cast<float>(swell_m * std::sin(0.4 * column) * std::cos(0.3 * row));
-  return {std::move(layers), costmap::testGround(), {}};
+  costmap::GroundModel::Parts parts = costmap::testGround()->parts();
+  for (costmap::GroundClass& ground : parts.classes) ground.rut_stiffness_std = 1.5;
+  return {std::move(layers), std::make_shared<costmap::GroundModel>(std::move(parts)), {}};
 }
 
 // Property: of the worlds in which the rover arrives, the mean energy and time are as forecast, and 90 % do not

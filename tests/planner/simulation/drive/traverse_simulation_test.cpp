@@ -116,7 +116,7 @@ TEST(MapExpectation, ExpectationIsThatOfTheSlopeUnderTheRover) {
     const auto want = plane.at({0.0, across});
     EXPECT_NEAR(said.slip_angle_rad, std::abs(want.slip_angle_rad), 0.03) << across;
     // Property: the cost grid, and with it the route file, has the sign of telemetry.
-    EXPECT_NEAR(map.published()->cost().hold(slope(0.0, across), {1.0, 0.0}).slip_angle_rad,
+    EXPECT_NEAR(map.published()->cost().detail(slope(0.0, across), {1.0, 0.0}).slip_angle_rad,
                 want.slip_angle_rad, 0.03)
         << across;
     EXPECT_GE(said.slip, want.slip - 0.02) << across;  // Property: at least the required slip
@@ -290,11 +290,12 @@ TEST(TraverseSimulation, TurnCostIsThatOfTheTrueGround) {
   EXPECT_NEAR(north.energy_J, straight.energy_J, 0.01 * straight.energy_J);
   const terramech::Rover rover = testRover();
   const terramech::SlopeState flat = terramech::SlopeEquilibrium(testSand(), rover).at({});
-  const terramech::TurnEfforts efforts = terramech::turnEfforts(
-      rover, {.lateral_resistance = std::tan(testSand().friction_angle_rad),
-              .bulldozing_N = terramech::bulldozing_N(testSand(), rover, flat.sinkage_m),
-              .rolling_J_per_m = flat.energy_J_per_m - rover.hotel_power_W / flat.speed_mps});
-  const terramech::TurnEffort radian = rover.turning_radius_m > 0.0 ? efforts.on_arc : efforts.in_place;
+  const terramech::TurnEffort radian =
+      terramech::turnEfforts(rover,
+                             {.lateral_resistance = std::tan(testSand().friction_angle_rad),
+                              .bulldozing_N = terramech::bulldozing_N(testSand(), rover, flat.sinkage_m),
+                              .rolling_J_per_m = flat.energy_J_per_m - rover.hotel_power_W / flat.speed_mps})
+          .at_vertex;
   const double quarter = 0.5 * std::numbers::pi;
   // After the turn the rear wheels leave the ruts of the front wheels for the length of the rover.
   const double energy = (bent.energy_J - straight.energy_J) / (quarter * radian.energy_J),
