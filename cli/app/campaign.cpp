@@ -163,31 +163,24 @@ std::optional<JobResults> Part::completed(const std::string& folder, const std::
 
 namespace {
 
-constexpr int kIndexTag = 1;
-constexpr int kFailedTag = 2;
-constexpr int kStoppedTag = 3;
-constexpr int kTextTag = 4;
+constexpr int kTag = 1;
+
+// The outcome of a job as one message.
+struct Answer {
+  std::size_t job = 0;
+  JobOutcome outcome;
+
+  template <typename Archive>
+  void serialize(Archive& archive, unsigned) {
+    archive& job& outcome.failed& outcome.stopped& outcome.text;
+  }
+};
 
 }  // namespace
 
 struct Campaign::Ranks {
   boost::mpi::environment environment;
   boost::mpi::communicator world;
-
-  void send(std::size_t i, const JobOutcome& outcome) const {
-    world.send(0, kIndexTag, i);
-    world.send(0, kFailedTag, outcome.failed);
-    world.send(0, kStoppedTag, outcome.stopped);
-    world.send(0, kTextTag, outcome.text);
-  }
-
-  void receive(int from, std::vector<JobOutcome>& outcomes) const {
-    std::size_t i = 0;
-    world.recv(from, kIndexTag, i);
-    world.recv(from, kFailedTag, outcomes[i].failed);
-    world.recv(from, kStoppedTag, outcomes[i].stopped);
-    world.recv(from, kTextTag, outcomes[i].text);
-  }
 };
 
 Campaign::Campaign() {
@@ -212,27 +205,28 @@ bool Campaign::leads() const noexcept {
 std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
                                       const ProgressMonitor& watch, std::size_t workers) const {
   if (!mpi_) return runHere(count, job, watch, workers);
+  const boost::mpi::communicator& world = mpi_->world;
   std::vector<JobOutcome> outcomes(leads() ? count : 0);
   std::size_t done = 0;
-  const auto report = [&] { watch.report(static_cast<double>(++done) / static_cast<double>(count)); };
-  const auto step = static_cast<std::size_t>(ranks());
-  for (auto i = static_cast<std::size_t>(mpi_->world.rank()); i < count; i += step) {
-    JobOutcome outcome = outcomeOf(job, i, watch);
+  const auto keep = [&](Answer answer) {
+    outcomes[answer.job] = std::move(answer.outcome);
+    watch.report(static_cast<double>(++done) / static_cast<double>(count));
+  };
+  const auto receive = [&] {
+    Answer answer;
+    world.recv(boost::mpi::any_source, kTag, answer);
+    keep(std::move(answer));
+  };
+  for (auto i = static_cast<std::size_t>(world.rank()); i < count; i += static_cast<std::size_t>(ranks())) {
+    Answer own{i, outcomeOf(job, i, watch)};
     if (!leads()) {
-      mpi_->send(i, outcome);
+      world.send(0, kTag, own);
       continue;
     }
-    while (mpi_->world.iprobe(boost::mpi::any_source, kIndexTag)) {
-      mpi_->receive(mpi_->world.probe(boost::mpi::any_source, kIndexTag).source(), outcomes);
-      report();
-    }
-    outcomes[i] = std::move(outcome);
-    report();
+    while (world.iprobe(boost::mpi::any_source, kTag)) receive();
+    keep(std::move(own));
   }
-  while (leads() && done < count) {
-    mpi_->receive(mpi_->world.probe(boost::mpi::any_source, kIndexTag).source(), outcomes);
-    report();
-  }
+  while (leads() && done < count) receive();
   return outcomes;
 }
 

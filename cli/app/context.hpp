@@ -141,6 +141,9 @@ void print(std::string_view text);
 /// Prints a text to stderr. If stderr is closed, the text is lost and no error is reported.
 void printError(std::string_view text) noexcept;
 
+/// Returns a word of a command line as a POSIX shell reads it, in quotes where necessary.
+std::string shellWord(const std::string& word);
+
 /// Returns a text on one line: line breaks become "; ", and tabulators blanks.
 std::string oneLine(std::string_view text);
 

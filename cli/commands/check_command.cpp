@@ -28,23 +28,16 @@ void bind(CLI::App& command, CheckOptions& options) {
   command.add_option("file", options.file, "cases to run")->required()->type_name("FILE.yaml");
 }
 
-// A word of a command line for the shell.
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 // The call of a case: talus OPERATION ARGUMENTS --KEY=VALUE, for each key of `input`; true is a flag.
 std::string callOf(const YamlFields& one) {
-  std::string call = quoted(std::filesystem::read_symlink("/proc/self/exe").string()) + " --json --quiet " +
-                     quoted(one.word("operation"));
-  for (const std::string& word : one.texts("arguments")) call += " " + quoted(word);
+  std::string call = shellWord(std::filesystem::read_symlink("/proc/self/exe").string()) +
+                     " --json --quiet " + shellWord(one.word("operation"));
+  for (const std::string& word : one.texts("arguments")) call += " " + shellWord(word);
   if (!one.has("input")) return call;
   const YamlFields input = one.fields("input");
   for (const std::string& key : input.names())
     for (const std::string& value : input.texts(key))
-      call += " " + quoted("--" + key + (value == "true" ? "" : "=" + value));
+      call += " " + shellWord("--" + key + (value == "true" ? "" : "=" + value));
   return call;
 }
 
@@ -54,7 +47,8 @@ struct Answer {
 };
 
 Answer answerTo(const std::string& call, const std::filesystem::path& folder) {
-  const std::string shell = "cd " + quoted(folder.empty() ? "." : folder.string()) + " && " + call + " 2>&1";
+  const std::string shell =
+      "cd " + shellWord(folder.empty() ? "." : folder.string()) + " && " + call + " 2>&1";
   Answer answer;
   FILE* pipe = popen(shell.c_str(), "r");  // NOLINT(cert-env33-c): every word is quoted
   if (pipe == nullptr) throw InputError({"talus check", "cannot start a program", "free some memory"});

@@ -11,6 +11,7 @@
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/file_formats.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/mission.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
 #include <talus/costmap/surface/surface_shape.hpp>
@@ -110,7 +111,8 @@ nlohmann::ordered_json costmapJson(const Ground& site, const costmap::CategoryCo
           {"rover", site.map.model().rover().name}};
 }
 
-int run(const CostmapOptions& options, Context& context) {
+int run(CostmapOptions& options, Context& context) {
+  readMission(options.ground);
   for (const auto& [file, extension] :
        {std::pair{options.nav2, ".pgm"}, {options.categories, ".qml"}, {options.geotiff, ".qml"}})
     if (!file.empty() && !context.force)

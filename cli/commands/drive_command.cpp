@@ -231,7 +231,8 @@ planner::Truth truthFor(const costmap::GroundModel& model, const std::string& pa
   return truth;
 }
 
-int run(const DriveCommandOptions& options, Context& context) {
+int run(DriveCommandOptions& options, Context& context) {
+  readMission(options.ground);
   const Campaign campaign;
   if (!campaign.leads()) context.quiet = true;
   checkInput(options.truth, "truth");

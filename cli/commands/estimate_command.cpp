@@ -259,7 +259,8 @@ std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e
   return plots;
 }
 
-void writePage(const EstimateCommand& options, const SoilEstimate& e) {
+void writePage(const EstimateCommand& options, const SoilEstimate& e,
+               const std::vector<std::string>& warnings) {
   HtmlReport page("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
   page.paragraph(
       fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
@@ -269,7 +270,7 @@ void writePage(const EstimateCommand& options, const SoilEstimate& e) {
               {"tan(friction angle)", fmt::format("{:.4f}", e.tan_friction),
                fmt::format("{:.4f}", std::sqrt(e.covariance(1, 1)))},
               {"shear modulus [mm]", fmt::format("{:.2f}", 1e3 * e.shear_modulus_m), ""}});
-  for (const std::string& text : e.unseen) page.paragraph("Not identifiable from these data: " + text);
+  for (const std::string& text : warnings) page.paragraph("Warning: " + text + ".");
   std::vector<Plot> plots = fitPlots(options, e);
   if (!e.points.empty()) plots.push_back(strengthPlot(e));
   if (e.posterior) plots.push_back(posteriorPlot(e));
@@ -286,16 +287,19 @@ int run(const EstimateCommand& asked, Context& context) {
   if (!estimate.ignored.empty())
     context.warn(fmt::format("{}: --method {} does not read {}", options.table.path, options.method,
                              fmt::join(estimate.ignored, ", ")));
-  for (const std::string& text : estimate.unseen) context.warn("ill-conditioned: " + text);
-  if (const std::string why = estimate.implausible(); !why.empty()) context.warn(why);
-  for (const std::string& text : estimate.warnings) context.warn(text);
+  std::vector<std::string> warnings;
+  for (const std::string& text : estimate.unseen) warnings.push_back("ill-conditioned: " + text);
+  if (const std::string why = estimate.implausible(); !why.empty()) warnings.push_back(why);
+  warnings.insert(warnings.end(), estimate.warnings.begin(), estimate.warnings.end());
   const Applicability applies = options.method == "bevameter"
                                     ? Applicability{}
                                     : tableApplicability(options.table, options.model, options.rover,
                                                          context.watch("checking the model"));
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  if (!options.html.empty()) writePage(options, estimate);
-  if (!applies.applies) context.warn(options.table.path + ": the model does not apply: " + applies.reason);
+  if (!applies.applies)
+    warnings.push_back(options.table.path + ": the model does not apply: " + applies.reason);
+  for (const std::string& text : warnings) context.warn(text);
+  if (!options.html.empty()) writePage(options, estimate, warnings);
   Json json = jsonOf(options.method, estimate);
   json["applies"] = applies.applies;
   json["applies_reason"] = applies.reason;

@@ -9,6 +9,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/mission.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/maps/maps_io.hpp>
@@ -90,7 +91,8 @@ std::string addNext(const costmap::TraversabilityMap& map, const maps::Cell& cel
       at.x_m, at.y_m, turn, next->cells, next->std, next->after);
 }
 
-int run(const ExplainOptions& options, Context& context) {
+int run(ExplainOptions& options, Context& context) {
+  readMission(options.ground);
   const Ground site = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const maps::Point point = maps::readPlace(options.at, site.map.elevation(), "--at");

@@ -1,13 +1,10 @@
 // talus info DEM: properties of a map, for checks before planning.
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
+#include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/maps.hpp>
@@ -21,53 +18,10 @@ struct InfoOptions {
   double footprint_m = 0.0;
 };
 
-struct Quantiles {
-  double p50 = std::nan("");
-  double p90 = std::nan("");
-  double p99 = std::nan("");
-};
-
-// Slopes of the valid cells [deg].
-std::vector<float> slopes_deg(const maps::TerrainMetrics& metrics) {
-  std::vector<float> out;
-  const maps::Grid& grid = metrics.dz_dx.grid();
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column) {
-      const float slope = metrics.slope_rad({column, row});
-      if (!std::isnan(slope)) out.push_back(slope / static_cast<float>(kDegree));
-    }
-  return out;
-}
-
-// Quantile of the values by nearest rank; reorders the values.
-double quantile(std::vector<float>& values, double share) {
-  const auto rank = std::lround(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return static_cast<double>(values[static_cast<std::size_t>(rank)]);
-}
-
-Quantiles quantiles(std::vector<float> values) {
-  if (values.empty()) return {};
-  return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 0.99)};
-}
-
-struct Range {
-  double lowest_m, highest_m;
-};
-
-Range heightRange(const maps::Raster<float>& elevation_m) {
-  Range range{INFINITY, -INFINITY};
-  for (float z : elevation_m.values()) {
-    range.lowest_m = std::fmin(range.lowest_m, static_cast<double>(z));
-    range.highest_m = std::fmax(range.highest_m, static_cast<double>(z));
-  }
-  return range;
-}
-
 nlohmann::ordered_json infoJson(const maps::ElevationMap& map, const maps::TerrainMetrics& metrics) {
   const maps::Grid& grid = map.grid();
-  const Quantiles slope = quantiles(slopes_deg(metrics));
-  const Range height = heightRange(map.elevation_m);
+  const std::vector<double> slope = quantiles(slope_deg(metrics), {0.5, 0.9, 0.99});
+  const std::vector<double> height = quantiles(map.elevation_m, {0.0, 1.0});
   nlohmann::ordered_json out;
   out["width"] = grid.width;
   out["height"] = grid.height;
@@ -76,8 +30,8 @@ nlohmann::ordered_json infoJson(const maps::ElevationMap& map, const maps::Terra
   out["body"] =
       map.georeference ? nlohmann::ordered_json(map.georeference->body()) : nlohmann::ordered_json();
   out["valid_fraction"] = maps::validFraction(map.elevation_m);
-  out["slope_deg"] = {{"p50", slope.p50}, {"p90", slope.p90}, {"p99", slope.p99}};
-  out["elevation_m"] = {{"min", height.lowest_m}, {"max", height.highest_m}};
+  out["slope_deg"] = {{"p50", slope[0]}, {"p90", slope[1]}, {"p99", slope[2]}};
+  out["elevation_m"] = {{"min", height[0]}, {"max", height[1]}};
   out["x_m"] = {grid.south_west.x_m, grid.south_west.x_m + grid.width * grid.resolution_m};
   out["y_m"] = {grid.south_west.y_m, grid.south_west.y_m + grid.height * grid.resolution_m};
   out["footprint_cells"] = metrics.footprint_cells;

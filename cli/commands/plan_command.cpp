@@ -386,7 +386,7 @@ void refuseInWindows(const PlanOptions& options) {
   throw InputError({options.ground.elevation.path,
                     "is too large to be combined with --planner, --plugin, --pairs, --risk, "
                     "--chassis or several goals",
-                    "read a part with --window, or the whole with --whole-field"});
+                    "read a part with --window, or the whole with a greater --in-memory"});
 }
 
 int runInWindows(const PlanOptions& options, Planner& planner, const Context& context) {
@@ -443,16 +443,14 @@ void checkMissionOutput(const PlanOptions& options) {
                       "name it with -o, or pass --force"});
 }
 
-int run(const PlanOptions& asked, Context& context) {
-  PlanOptions options = asked;
-  if (!options.ground.is_cost && isMission(options.ground.elevation.path)) {
-    readMission(options);
-    if (!context.force && asked.output.empty() && !options.output.empty()) checkMissionOutput(options);
-  }
+int run(PlanOptions& options, Context& context) {
+  const bool names_output = !options.output.empty();
+  readMission(options);
+  if (!context.force && !names_output && !options.output.empty()) checkMissionOutput(options);
   if (!context.force) checkFormat(options.output, options.pairs.empty() ? planner::kRouteFiles : "FILE.csv");
   requirePlaces(options);
   Planner planner = plannerOf(options, context);
-  if (!options.whole_field && !(options.corridor_percent > 0.0) && !options.ground.is_cost &&
+  if (!(options.corridor_percent > 0.0) && !options.ground.is_cost &&
       needsWindows(options.ground, options.in_memory))
     return runInWindows(options, planner, context);
   return options.pairs.empty() ? runWhole(options, planner, context) : runPairs(options, planner, context);

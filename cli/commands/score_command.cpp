@@ -8,6 +8,7 @@
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/cli/ground/mission.hpp>
 #include <talus/cli/ground/plan_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>
@@ -108,7 +109,8 @@ std::vector<maps::Point> pointsOf(const ScoreOptions& options, const Ground& gro
   return std::move(plan.points);
 }
 
-int run(const ScoreOptions& options, Context& context) {
+int run(ScoreOptions& options, Context& context) {
+  readMission(options.ground);
   requirePath(options);
   const Ground ground = readGround(options.ground, context);
   if (context.stop.stop_requested()) return Exit::kCancelled;

@@ -208,6 +208,7 @@ int run(const ViewOptions& options, Context& context) {
                       "pass routes, and the map as --map"});
   const ProgressMonitor drawing = context.watch("draw");
   Scene scene = of_route ? routeScene(options, context) : mapScene(options, options.file.path, context);
+  if (!of_route) addGroundFacts(scene);
   addImage(scene, options.image);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   saveScene(scene, html, options.png);

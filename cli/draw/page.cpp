@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <vector>
 
@@ -53,25 +52,16 @@ std::string dataUri(const Image& image) {
 }
 
 /// Returns a data URI of an image with 24 bits per cell, in red, green and blue; word(cell) returns the bits.
-/// The top row is the northernmost row of the grid.
-std::string wordsUri(const maps::Grid& grid, const std::function<std::uint32_t(maps::Cell)>& word) {
-  Image image(grid.width, grid.height);
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column)
-      image.at(column, grid.height - 1 - row) = 0xFF000000U | word(maps::Cell{column, row});
-  return dataUri(image);
+template <typename Word>
+std::string wordsUri(const maps::Grid& grid, Word word) {
+  return dataUri(imageOf(grid, [&](Cell cell) { return 0xFF000000U | word(cell); }));
 }
 
 /// Adds the values as integers with the decimals of the layer, or fewer if 24 bits do not suffice. 0 is no
 /// value; other values are stored as 1 + steps above the lowest value.
 void addValues(ordered_json& json, const ValueLayer& layer) {
-  double low = INFINITY, high = -INFINITY;
-  for (const float v : layer.values.values())
-    if (std::isfinite(v)) {
-      low = std::min(low, static_cast<double>(v));
-      high = std::max(high, static_cast<double>(v));
-    }
-  if (!(low <= high)) low = high = 0.0;
+  const std::vector<double> ends = quantiles(layer.values, {0.0, 1.0});
+  const double low = std::isnan(ends[0]) ? 0.0 : ends[0], high = std::isnan(ends[0]) ? 0.0 : ends[1];
   int decimals = layer.decimals;
   while ((high - low) * std::pow(10.0, decimals) > 16777213.0) --decimals;
   const double scale = std::pow(10.0, decimals), first = std::round(low * scale);

@@ -14,87 +14,36 @@
 
 namespace talus::cli {
 
-namespace {
-
 using maps::Cell;
 using maps::Raster;
 
-/// Gradient by central differences, one-sided at edges and beside cells without data; zero for an isolated
-/// cell.
-class Gradient {
- public:
-  explicit Gradient(const Raster<float>& z) : z_(z) {}
-
-  double x(Cell c) const { return along({c.column - 1, c.row}, c, {c.column + 1, c.row}); }
-  double y(Cell c) const { return along({c.column, c.row - 1}, c, {c.column, c.row + 1}); }
-
- private:
-  double value(Cell c) const { return z_.grid().contains(c) ? static_cast<double>(z_[c]) : std::nan(""); }
-
-  double along(Cell before, Cell at, Cell after) const {
-    const bool has_before = !std::isnan(value(before));
-    const bool has_after = !std::isnan(value(after));
-    const double low = value(has_before ? before : at);
-    const double high = value(has_after ? after : at);
-    const int steps = int{has_before} + int{has_after};
-    return steps == 0 ? 0.0 : (high - low) / (steps * z_.grid().resolution_m);
-  }
-
-  const Raster<float>& z_;
-};
-
-/// Vertical exaggeration: scales the 90 % quantile of slope to 25 deg; 1 to 20.
-double exaggeration(const Raster<float>& z) {
-  const Gradient gradient(z);
-  std::vector<double> steepness;
-  const std::size_t stride = std::max<std::size_t>(1, z.values().size() / 20000);
-  for (std::size_t i = 0; i < z.values().size(); i += stride) {
-    const auto width = static_cast<std::size_t>(z.grid().width);
-    const Cell c{static_cast<int>(i % width), static_cast<int>(i / width)};
-    if (!std::isnan(z[c])) steepness.push_back(std::hypot(gradient.x(c), gradient.y(c)));
-  }
-  if (steepness.empty()) return 1.0;
-  const auto p90 =
-      steepness.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(steepness.size() - 1));
-  std::nth_element(steepness.begin(), p90, steepness.end());
-  return std::clamp(std::tan(25.0 * kDegree) / std::max(*p90, 1e-6), 1.0, 20.0);
-}
-
-/// Builds an image from draw(cell), with the northernmost row first.
-template <typename Draw>
-Image imageOf(const maps::Grid& grid, Draw draw) {
-  Image image(grid.width, grid.height);
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column)
-      image.at(column, grid.height - 1 - row) = draw(Cell{column, row});
-  return image;
-}
-
-}  // namespace
-
 Raster<float> hillshade(const Raster<float>& elevation_m) {
-  const Gradient gradient(elevation_m);
-  const double factor = exaggeration(elevation_m);
+  const maps::TerrainMetrics metrics = maps::terrainMetrics(elevation_m, {});
+  Raster<float> steepness(elevation_m.grid()), shade(elevation_m.grid(), std::nanf(""));
+  for (std::size_t i = 0; i < shade.values().size(); ++i)
+    steepness.values()[i] = std::hypot(metrics.dz_dx.values()[i], metrics.dz_dy.values()[i]);
+  // Exaggeration: scales the 90 % quantile of slope to 25 deg; 1 to 20.
+  const double p90 = quantiles(steepness, {0.9}).front();
+  const double factor =
+      std::isnan(p90) ? 1.0 : std::clamp(std::tan(25.0 * kDegree) / std::max(p90, 1e-6), 1.0, 20.0);
   // unit vector to the sun: azimuth 315 deg, elevation 45 deg
   constexpr double kSunX = -0.5, kSunY = 0.5, kSunZ = std::numbers::sqrt2 / 2.0;
-  Raster<float> shade(elevation_m.grid(), std::nanf(""));
-  for (int row = 0; row < elevation_m.grid().height; ++row) {
-    for (int column = 0; column < elevation_m.grid().width; ++column) {
-      const Cell c{column, row};
-      if (std::isnan(elevation_m[c])) continue;
-      const double gx = factor * gradient.x(c);
-      const double gy = factor * gradient.y(c);
-      const double cosine = (-gx * kSunX - gy * kSunY + kSunZ) / std::sqrt(1.0 + gx * gx + gy * gy);
-      shade[c] = static_cast<float>(std::clamp(0.12 + 0.88 * cosine, 0.0, 1.0));
-    }
+  const auto gradient = [factor](float value) {
+    return std::isnan(value) ? 0.0 : factor * static_cast<double>(value);
+  };
+  for (std::size_t i = 0; i < shade.values().size(); ++i) {
+    if (std::isnan(elevation_m.values()[i])) continue;
+    const double gx = gradient(metrics.dz_dx.values()[i]), gy = gradient(metrics.dz_dy.values()[i]);
+    const double cosine = (-gx * kSunX - gy * kSunY + kSunZ) / std::sqrt(1.0 + gx * gx + gy * gy);
+    shade.values()[i] = static_cast<float>(std::clamp(0.12 + 0.88 * cosine, 0.0, 1.0));
   }
   return shade;
 }
 
 Range lightRange(const Raster<float>& shade) {
-  const auto range = innerRange(shade);
-  if (!range) return {};
-  return range->high > range->low + 0.02 ? *range : Range{range->low - 0.5, range->low + 0.5};
+  const std::vector<double> ends = quantiles(shade, kInner);
+  if (std::isnan(ends[0])) return {};
+  return ends[1] > ends[0] + 0.02 ? Range{ends[0], ends[1]} : Range{ends[0] - 0.5, ends[0] + 0.5};
 }
 
 Image shadeImage(const Raster<float>& shade) {
@@ -378,18 +327,10 @@ class Picture {
   void headingLegend(Spot& at) {
     canvas_.text("allowed headings", {at.x, at.y + 4}, {.bold = true});
     at.y += 24;
-    std::array<double, 4> share{};
-    double total = 0.0;
-    for (const HeadingShares& s : scene_.headings.values()) {
-      for (std::size_t i = 0; i < 4; ++i) {
-        share[i] += s.count[i];
-        total += s.count[i];
-      }
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
+    const std::array<double, 4> shares = sharesOf(scene_.headings);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
       swatch(at, colourOf(static_cast<AllowedHeadings>(i)));
-      canvas_.text(fmt::format("{}, {:.1f} %", kAllowedNames[i], 100.0 * share[i] / std::max(1.0, total)),
-                   {at.x + 36, at.y + 4});
+      canvas_.text(fmt::format("{}, {:.1f} %", kAllowedNames[i], 100.0 * shares[i]), {at.x + 36, at.y + 4});
       at.y += 24;
     }
   }
@@ -420,14 +361,10 @@ class Picture {
   }
 
   void elevations(Spot at) {
-    float low = INFINITY;
-    float high = -INFINITY;
-    for (const float z : scene_.elevation_m.values()) {
-      low = std::fmin(low, z);
-      high = std::fmax(high, z);
-    }
-    if (!(low <= high)) return;
-    canvas_.text(fmt::format("elevation {:.1f} to {:.1f} m", low, high), {at.x, at.y + 8}, {.size = 11});
+    const std::vector<double> ends = quantiles(scene_.elevation_m, {0.0, 1.0});
+    if (std::isnan(ends[0])) return;
+    canvas_.text(fmt::format("elevation {:.1f} to {:.1f} m", ends[0], ends[1]), {at.x, at.y + 8},
+                 {.size = 11});
     canvas_.text("hillshade from the north-west", {at.x, at.y + 24}, {.size = 11});
     canvas_.text("light grey: no data", {at.x, at.y + 40}, {.size = 11});
   }

@@ -8,6 +8,16 @@
 
 namespace talus::cli {
 
+/// Returns the image of a grid with the pixel draw(cell) for each cell, the northernmost row first.
+template <typename Draw>
+Image imageOf(const maps::Grid& grid, Draw draw) {
+  Image image(grid.width, grid.height);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column)
+      image.at(column, grid.height - 1 - row) = draw(maps::Cell{column, row});
+  return image;
+}
+
 /// Returns the hillshade of an elevation map: brightness 0 to 1 [-] with the sun in the north-west at 45 deg
 /// elevation; NaN without data. Flat terrain is vertically exaggerated.
 maps::Raster<float> hillshade(const maps::Raster<float>& elevation_m);

@@ -1,3 +1,5 @@
+#include <numeric>
+
 #include <fmt/format.h>
 
 #include <talus/cli/draw/route_summary.hpp>
@@ -54,24 +56,9 @@ using maps::Raster;
 using planner::Reach;
 
 Range scaleRange(const Raster<float>& values) {
-  const Range range = innerRange(values).value_or(Range{0.0, 1.0});
-  return range.high > range.low ? range : Range{range.low, range.low + 1.0};
-}
-
-/// Slope of the drawn cells by central differences [deg].
-Raster<float> slope_deg(const Raster<float>& z) {
-  const maps::Grid& grid = z.grid();
-  Raster<float> out(grid, std::nanf(""));
-  for (int r = 1; r + 1 < grid.height; ++r) {
-    for (int c = 1; c + 1 < grid.width; ++c) {
-      const float dx = z[{c + 1, r}] - z[{c - 1, r}];
-      const float dy = z[{c, r + 1}] - z[{c, r - 1}];
-      const double gradient =
-          std::hypot(static_cast<double>(dx), static_cast<double>(dy)) / (2.0 * grid.resolution_m);
-      out[{c, r}] = static_cast<float>(std::atan(gradient) / kDegree);
-    }
-  }
-  return out;
+  const std::vector<double> ends = quantiles(values, kInner);
+  if (std::isnan(ends[0])) return {};
+  return {ends[0], ends[1] > ends[0] ? ends[1] : ends[0] + 1.0};
 }
 
 /// Averages of the map's estimates over the cells of each block; NaN if no cell has a category.
@@ -195,11 +182,8 @@ void addElevation(Scene& scene) {
 /// Slope [deg]. If each cell is drawn: slope of the plane that `talus explain` prints. Otherwise: block mean
 /// of the planning slopes.
 Raster<float> slope_deg(const costmap::TraversabilityMap& map, const Blocks& blocks) {
-  if (blocks.factor() == 1) {
-    const maps::TerrainMetrics metrics =
-        maps::terrainMetrics(map.elevation().elevation_m, map.surface().footprint(1));
-    return blocks.mean([&](Cell cell) { return static_cast<double>(metrics.slope_rad(cell)) / kDegree; });
-  }
+  if (blocks.factor() == 1)
+    return cli::slope_deg(maps::terrainMetrics(map.elevation().elevation_m, map.surface().footprint(1)));
   const auto version = map.published();
   return blocks.mean([&](Cell cell) {
     if (has(map.surface().hazards(cell), costmap::Hazard::Unknown)) return std::nan("");
@@ -338,24 +322,34 @@ struct Extent {
 
 }  // namespace
 
-std::optional<Range> innerRange(const Raster<float>& values) {
+std::vector<double> quantiles(const Raster<float>& values, const std::vector<double>& shares) {
   std::vector<float> finite;
   for (const float v : values.values())
     if (std::isfinite(v)) finite.push_back(v);
-  if (finite.empty()) return std::nullopt;
-  const auto quantile = [&finite](double share) {
-    const auto at =
-        finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
+  std::vector<double> out;
+  for (const double share : shares) {
+    if (finite.empty()) {
+      out.push_back(std::nan(""));
+      continue;
+    }
+    const auto at = finite.begin() + std::lround(share * static_cast<double>(finite.size() - 1));
     std::nth_element(finite.begin(), at, finite.end());
-    return static_cast<double>(*at);
-  };
-  return Range{quantile(0.02), quantile(0.98)};
+    out.push_back(static_cast<double>(*at));
+  }
+  return out;
+}
+
+Raster<float> slope_deg(const maps::TerrainMetrics& metrics) {
+  Raster<float> out(metrics.dz_dx.grid());
+  costmap::forEachCell(costmap::allOf(out.grid()),
+                       [&](Cell cell) { out[cell] = metrics.slope_rad(cell) / static_cast<float>(kDegree); });
+  return out;
 }
 
 Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options) {
   const Blocks blocks(map.grid(), options.max_side);
   Scene scene = ground(map, blocks, options);
-  addSlope(scene, slope_deg(scene.elevation_m));
+  addSlope(scene, slope_deg(maps::terrainMetrics(scene.elevation_m, {})));
   addElevation(scene);
   return scene;
 }
@@ -393,6 +387,30 @@ Scene sceneOf(const planner::Route& route, const SceneOptions& options) {
 
 void addImage(Scene& scene, const std::string& path) {
   if (!path.empty()) scene.image = maps::readImage(path, scene.georeference, scene.grid());
+}
+
+std::array<double, 4> sharesOf(const Raster<HeadingShares>& headings) {
+  std::array<double, 4> shares{};
+  for (const HeadingShares& cell : headings.values())
+    for (std::size_t i = 0; i < shares.size(); ++i) shares[i] += cell.count[i];
+  const double total = std::max(1.0, std::accumulate(shares.begin(), shares.end(), 0.0));
+  for (double& share : shares) share /= total;
+  return shares;
+}
+
+void addGroundFacts(Scene& scene) {
+  std::string headings;
+  if (!scene.headings.empty())
+    for (std::size_t i = 0; const double share : sharesOf(scene.headings))
+      headings += fmt::format("{}{} {}", i == 0 ? "" : ", ", kAllowedNames[i], percentText(share)), ++i;
+  if (!headings.empty()) scene.facts.emplace_back("allowed headings", headings);
+  for (const ValueLayer& layer : scene.layers) {
+    const std::vector<double> at = quantiles(layer.values, {0.1, 0.5, 0.9});
+    if (!std::isnan(at[1]))
+      scene.facts.emplace_back(
+          layer.name, fmt::format("median {:.3g}, 80 % of the cells {:.3g} to {:.3g}{}{}", at[1], at[0],
+                                  at[2], layer.unit.empty() ? "" : " ", layer.unit));
+  }
 }
 
 void addRoute(Scene& scene, const planner::Route& route) {

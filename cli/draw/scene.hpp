@@ -115,15 +115,23 @@ struct HeadingShares {
   std::array<std::uint8_t, 4> count{};
 };
 
+/// Returns the share of each of AllowedHeadings of the cells.
+std::array<double, 4> sharesOf(const maps::Raster<HeadingShares>& headings);
+
 /// A class of a layer that shows classes instead of a continuous scale.
 struct LayerClass {
   std::string name;
   Colour colour;
 };
 
-/// Returns the range from the 2 % to the 98 % quantile of the finite values, so that outliers do not compress
-/// the colour scale; nullopt without finite values.
-std::optional<Range> innerRange(const maps::Raster<float>& values);
+/// Returns the quantiles of the finite values at the given shares, by nearest rank; NaN without finite values.
+std::vector<double> quantiles(const maps::Raster<float>& values, const std::vector<double>& shares);
+
+/// Shares between which colours change, so that outliers do not compress a colour scale.
+inline const std::vector<double> kInner{0.02, 0.98};
+
+/// Returns the slopes of planes that were fitted to all cells [deg].
+maps::Raster<float> slope_deg(const maps::TerrainMetrics& metrics);
 
 /// A layer of a scene: a quantity over the map that is drawn in colours.
 struct ValueLayer {
@@ -234,6 +242,9 @@ Scene sceneOf(const planner::Route& route, const SceneOptions& options);
 
 /// Adds a picture of the ground, such as an orthophoto, from a file; nothing for an empty path. @throws InputError
 void addImage(Scene& scene, const std::string& path);
+
+/// Adds what the ground is like to the facts: shares of the allowed headings, and the distribution of each layer.
+void addGroundFacts(Scene& scene);
 
 /// Adds a route and its summary to a scene.
 void addRoute(Scene& scene, const planner::Route& route);

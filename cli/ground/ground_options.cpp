@@ -301,7 +301,10 @@ SiteFiles GroundOptions::files() const {
 }
 
 void addGroundOptions(CLI::App& command, GroundOptions& options) {
+  options.call = &command;
   addMapOptions(command, options.elevation);
+  command.get_option("DEM")->description(
+      "elevation map: any GDAL raster, or an OctoMap; or the mission that describes the site");
   command.add_option("--map", options.map_file, "traversability map from `talus costmap` or `talus update`")
       ->type_name("MAP.ot");
   groupOptions(command, "Elevation map");

@@ -43,12 +43,15 @@ struct GroundOptions : SiteFiles {
   std::string
       map_file{};         ///< file of --map, which `talus costmap` wrote with its own layers, soils and rover
   std::string mission{};  ///< mission file that stated options of the call; empty: none
+  /// The parsed call whose options are bound to this object; null: none.
+  CLI::App* call = nullptr;
 
   /// Returns the files with map and mission in their manifest.
   SiteFiles files() const;
 };
 
-/// Declares the option --map and the options of addMapOptions() and addGroundChoices().
+/// Declares the option --map and the options of addMapOptions() and addGroundChoices(). The positional argument may
+/// also be a mission: readMission().
 void addGroundOptions(CLI::App& command, GroundOptions& options);
 
 /// Declares the options that apply to any map: those of addLayerOptions(), --soils, --soil, --model, --rover,

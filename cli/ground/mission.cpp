@@ -31,12 +31,9 @@ std::string fileOrName(const std::string& word, const std::filesystem::path& fol
   return names_file ? beside(word, folder) : word;
 }
 
-// Takes a value of the mission, resolved by the mission's folder, unless the call states one.
-void take(std::string& option, const YamlFields& fields, const std::string& name,
-          const std::filesystem::path& folder,
-          std::string (*resolved)(const std::string&, const std::filesystem::path&) = beside) {
-  const std::string given = fields.word(name, "");
-  if (option.empty()) option = resolved(given, folder);
+// A text of the mission; empty without the key.
+std::string given(const YamlFields& fields, const std::string& name) {
+  return fields.word(name, "");
 }
 
 // A number checked with the validator of the corresponding option.
@@ -71,40 +68,40 @@ std::string place(const YamlFields& fields, const std::string& name, const std::
 
 void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {
   maps.only(namesOf(missionMapKeys()));
-  ground.elevation.path = beside(maps.word("dem", ""), folder);
-  take(ground.map_file, maps, "map", folder);
-  take(ground.classes, maps, "terrain", folder);
-  take(ground.rocks, maps, "rocks", folder);
-  if (maps.has("keep_out")) ground.keep_out.push_back(beside(maps.word("keep_out"), folder));
-  if (maps.has("resolution_m") && !ground.elevation.read.resolution_m)
-    ground.elevation.read.resolution_m = maps.number("resolution_m");
-  if (maps.flag("ignore_crs", false)) ground.elevation.read.ignore_crs = true;
-  if (ground.elevation.path.empty() && ground.map_file.empty())
-    maps.refuse("", "defines no map", "give dem: FILE, or map: FILE.ot");
-  if (ground.elevation.path.empty()) ground.elevation.path = ground.map_file;
+  ground.elevation.path = beside(given(maps, "dem"), folder);
+  ground.map_file = beside(given(maps, "map"), folder);
+  ground.classes = beside(given(maps, "terrain"), folder);
+  ground.rocks = beside(given(maps, "rocks"), folder);
+  if (maps.has("resolution_m")) ground.elevation.read.resolution_m = maps.number("resolution_m");
+  ground.elevation.read.ignore_crs = maps.flag("ignore_crs", false);
 }
 
-// A policy value that differs from its default was set on the command line and is kept.
 void readThresholds(const YamlFields& fields, costmap::TravelPolicy& policy) {
+  using Policy = costmap::TravelPolicy;
   fields.only(namesOf(thresholdKeys()));
-  const costmap::TravelPolicy defaults;
-  const auto number = [&](double costmap::TravelPolicy::*field, const char* name) {
-    const double given = fields.number(name, policy.*field);
-    if (policy.*field == defaults.*field) policy.*field = given;
-  };
-  const auto flag = [&](bool costmap::TravelPolicy::*field, const char* name) {
-    const bool given = fields.flag(name, policy.*field);
-    if (policy.*field == defaults.*field) policy.*field = given;
-  };
-  number(&costmap::TravelPolicy::slope_margin_rad, "slope_margin_rad");
-  number(&costmap::TravelPolicy::sinkage_threshold, "sinkage_threshold");
-  number(&costmap::TravelPolicy::sinkage_critical, "sinkage_critical");
-  number(&costmap::TravelPolicy::max_immobilisation, "max_immobilisation");
-  flag(&costmap::TravelPolicy::allow_marginal, "allow_marginal");
-  flag(&costmap::TravelPolicy::allow_dangerous, "allow_dangerous");
-  flag(&costmap::TravelPolicy::allow_unknown, "allow_unknown");
-  number(&costmap::TravelPolicy::time_weight_W, "time_weight_W");
-  number(&costmap::TravelPolicy::risk_weight_J, "risk_weight_J");
+  for (const auto& [name, field] : {std::pair{"slope_margin_rad", &Policy::slope_margin_rad},
+                                    {"sinkage_threshold", &Policy::sinkage_threshold},
+                                    {"sinkage_critical", &Policy::sinkage_critical},
+                                    {"max_immobilisation", &Policy::max_immobilisation},
+                                    {"time_weight_W", &Policy::time_weight_W},
+                                    {"risk_weight_J", &Policy::risk_weight_J}})
+    policy.*field = fields.number(name, policy.*field);
+  for (const auto& [name, field] : {std::pair{"allow_marginal", &Policy::allow_marginal},
+                                    {"allow_dangerous", &Policy::allow_dangerous},
+                                    {"allow_unknown", &Policy::allow_unknown}})
+    policy.*field = fields.flag(name, policy.*field);
+}
+
+// Returns true if the call states an option.
+bool isStated(const CLI::App* call, const char* option) {
+  return call != nullptr && call->get_option(option)->count() > 0;
+}
+
+// Assigns the options that the call states once more, over the values of its mission.
+void applyCall(CLI::App* call) {
+  if (call == nullptr) return;
+  for (CLI::Option* option : call->get_options())
+    if (option->count() > 0 && option->nonpositional()) option->run_callback();
 }
 
 }  // namespace
@@ -165,32 +162,63 @@ bool isMission(const std::string& path) {
   return extension == ".yaml" || extension == ".yml";
 }
 
-void readMission(PlanOptions& options) {
-  options.ground.mission = options.ground.elevation.path;
-  const std::filesystem::path path = options.ground.mission;
-  const std::filesystem::path folder = path.parent_path();
-  const YamlFields fields = YamlFields::file(path.string());
+namespace {
+
+bool namesMission(const GroundOptions& ground) {
+  return !ground.is_cost && isMission(ground.elevation.path);
+}
+
+std::filesystem::path folderOf(const GroundOptions& ground) {
+  return std::filesystem::path(ground.elevation.path).parent_path();
+}
+
+YamlFields missionOf(const GroundOptions& ground) {
+  YamlFields fields = YamlFields::file(ground.elevation.path);
   fields.only(namesOf(missionKeys()));
-  readMaps(fields.fields("maps"), options.ground, folder);
-  take(options.ground.rover, fields, "rover", folder, fileOrName);
-  take(options.ground.soil, fields, "soil", folder, fileOrName);
-  take(options.ground.model, fields, "model", folder);
-  take(options.ground.soils, fields, "soils", folder);
-  if (fields.has("thresholds")) readThresholds(fields.fields("thresholds"), options.ground.policy);
-  if (options.planner == "field") options.planner = fields.word("planner", "field");
-  if (options.start.empty()) options.start = place(fields, "start", folder);
-  if (options.goals.empty()) options.goals = places(fields, "goal", folder);
-  if (options.via.empty()) options.via = places(fields, "via", folder);
+  return fields;
+}
+
+// Reads the site of a mission, then assigns all options that the call states.
+void readSite(const YamlFields& fields, GroundOptions& ground) {
+  ground.mission = ground.elevation.path;
+  const std::filesystem::path folder = folderOf(ground);
+  const YamlFields maps = fields.fields("maps");
+  readMaps(maps, ground, folder);
+  ground.rover = fileOrName(given(fields, "rover"), folder);
+  ground.soil = fileOrName(given(fields, "soil"), folder);
+  const std::string model = beside(given(fields, "model"), folder);
+  ground.model = isStated(ground.call, "--soil") ? "" : model;  // a model would take the place of the soil
+  ground.soils = beside(given(fields, "soils"), folder);
+  if (fields.has("thresholds")) readThresholds(fields.fields("thresholds"), ground.policy);
+  applyCall(ground.call);
+  if (maps.has("keep_out")) ground.keep_out.push_back(beside(maps.word("keep_out"), folder));
+  if (ground.elevation.path.empty()) ground.elevation.path = ground.map_file;
+  if (ground.elevation.path.empty()) maps.refuse("", "defines no map", "give dem: FILE, or map: FILE.ot");
+}
+
+}  // namespace
+
+void readMission(GroundOptions& ground) {
+  if (namesMission(ground)) readSite(missionOf(ground), ground);
+}
+
+void readMission(PlanOptions& options) {
+  if (!namesMission(options.ground)) return;
+  const std::filesystem::path folder = folderOf(options.ground);
+  const YamlFields fields = missionOf(options.ground);
+  options.planner = fields.word("planner", "field");
+  options.start = place(fields, "start", folder);
+  options.goals = places(fields, "goal", folder);
+  options.via = places(fields, "via", folder);
   const CLI::Validator heading_range = heading();
   for (const auto& [heading, key] : {std::pair{&options.drive.start_heading_rad, "start_heading_rad"},
                                      std::pair{&options.drive.goal_heading_rad, "goal_heading_rad"}})
-    if (!*heading && fields.has(key)) *heading = ranged(fields, key, heading_range);
-  if (!fields.flag("reverse", true)) options.drive.no_reverse = true;
-  if (options.tolerance_m == 0.0 && fields.has("tolerance_m"))
-    options.tolerance_m = ranged(fields, "tolerance_m", notNegative());
-  if (options.time_limit_s == 0.0 && fields.has("time_s"))
-    options.time_limit_s = ranged(fields, "time_s", positive());
-  take(options.output, fields, "output", folder);
+    if (fields.has(key)) *heading = ranged(fields, key, heading_range);
+  options.drive.no_reverse = !fields.flag("reverse", true);
+  if (fields.has("tolerance_m")) options.tolerance_m = ranged(fields, "tolerance_m", notNegative());
+  if (fields.has("time_s")) options.time_limit_s = ranged(fields, "time_s", positive());
+  options.output = beside(given(fields, "output"), folder);
+  readSite(fields, options.ground);
 }
 
 namespace {

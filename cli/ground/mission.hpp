@@ -40,8 +40,6 @@ struct PlanOptions {
   double max_risk = 0.0;  ///< upper bound of the immobilisation probability of the route; 0: no bound [-]
   /// Number of cells up to which a map is kept in memory; larger maps are read window by window.
   std::size_t in_memory = 40'000'000;
-  /// True if the whole map is searched at full resolution, not a corridor around a coarse route.
-  bool whole_field = false;
   bool no_proof = false;  ///< true if no improved lower bound and no alternative corridors are computed
   double corridor_percent = 0.0;  ///< excess over the cost of the route whose corridor is written; 0: none
   double gap = 0.0;           ///< proven gap at which planning ends; 0: as small as the usual work allows [-]
@@ -60,8 +58,10 @@ std::span<const terramech::FileKey> thresholdKeys();
 /// Returns true if the extension of the path is that of a mission file, .yaml or .yml.
 bool isMission(const std::string& path);
 
-/// Reads the mission file options.ground.elevation.path into `options`. Values from the command line have
-/// precedence. Paths in the file are relative to the file. @throws InputError with file and line
+/// Read the mission file `elevation.path`, if it is one, into the options of a site or of `talus plan`. Every option that
+/// the call states has precedence, also with its default value; keep-out areas of both apply. Paths in the file are
+/// relative to the file. @throws InputError with file and line
+void readMission(GroundOptions& ground);
 void readMission(PlanOptions& options);
 
 /// Values of a new mission file (input of `talus plan`); all other keys are written as comments.

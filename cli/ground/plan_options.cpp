@@ -164,9 +164,6 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
                   "write to -o AREA.gpkg the area that every route within this excess over the cost stays in")
       ->type_name("PERCENT")
       ->check(within(0.01, 1000.0));
-  command.add_flag(
-      "--whole-field", options.whole_field,
-      "read and search the whole map at full resolution instead of a corridor around a coarse route");
   command
       .add_option("--risk", options.max_risk, "upper limit of the immobilisation probability of the route")
       ->type_name("ALPHA")

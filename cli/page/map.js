@@ -113,8 +113,10 @@ function lightFilter({low, high}) {
 // relief.
 function chooseLayer(map, data, box) {
   const select = document.getElementById("layer"), opacity = document.getElementById("opacity");
-  const folded = cornerBox(map, "bottomright", "legend").appendChild(document.createElement("details"));
-  folded.open = map.getSize().x >= 600;
+  const wide = map.getSize().x >= 600, below = !wide && !data.routes.length;  // without profiles there is room below the map
+  const legend = below ? L.DomUtil.create("div", "legend", document.getElementById("key")) : cornerBox(map, "bottomright", "legend");
+  const folded = legend.appendChild(document.createElement("details"));
+  folded.open = wide || below;
   folded.appendChild(document.createElement("summary")).textContent = "legend";
   folded.appendChild(document.createElement("div")).id = "legend";
   const names = [...data.layers.map(layer => layer.name), "hillshade only"];

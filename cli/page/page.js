@@ -34,11 +34,11 @@ function showFacts(data) {
   for (const [name, value] of data.provenance) addRow(document.getElementById("provenance"), name, [value]);
 }
 
-// Moves the legend and the explained cell from the map into their own area for print, where they would hide
-// the route or be cut off at the edge of the map. Returns a function that moves both back.
+// Moves the legend and the explained cell into their own area for print, where the legend would hide the route. Returns
+// a function that moves both back.
 function besideMap() {
   const key = document.getElementById("key"), legend = document.querySelector(".legend"), open = legend.firstChild.open;
-  const moved = [legend, ...document.querySelectorAll("#map .leaflet-popup-content > div, #sheet > div")].map(part => [part, part.parentNode]);
+  const moved = [legend, ...document.querySelectorAll("#sheet > div")].map(part => [part, part.parentNode]);
   for (const [part] of moved) key.appendChild(part);
   legend.firstChild.open = true;
   return () => {
@@ -47,8 +47,8 @@ function besideMap() {
   };
 }
 
-// Lays out page and map on one sheet of paper before printing, and restores the screen layout afterwards.
-function printable(map, data, profiles) {
+// Lays out page and map on the screen, on one sheet of paper before printing, and on the screen afterwards.
+function layOut(map, data, profiles) {
   let back = null;
   const lay = paper => {
     document.documentElement.classList.toggle("paper", paper);
@@ -58,6 +58,7 @@ function printable(map, data, profiles) {
     firstView(map, data);
     if (profiles) profiles.draw();
   };
+  lay(false);
   let view = null;
   addEventListener("beforeprint", () => {
     view = [map.getCenter(), map.getZoom()];
@@ -73,13 +74,14 @@ function start() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const map = drawMap(document.getElementById("map"), data);
   showFacts(data);
-  probeCells(map, data, offerRuler(map, data));
-  offerRelief(data);
+  const explain = probeCells(map, data, offerRuler(map, data));
+  offerRelief(data, explain);
   const story = data.story ? showStory(map, data.story) : null;
   const routes = data.routes;
   if (!routes.length || routes.some(({points}) => points.length < 2)) {
     document.getElementById("profiles").hidden = true;
-    printable(map, data, null);
+    layOut(map, data, null);
+    explain(data.grid.width >> 1, data.grid.height >> 1);
     return;
   }
   const text = document.getElementById("reading");
@@ -99,7 +101,7 @@ function start() {
   });
   const charts = document.getElementById("charts");
   const profiles = drawProfiles(charts, routes, s => here(routes.map(({points}) => pointAt(points, s))));
-  printable(map, data, profiles);
+  layOut(map, data, profiles);
 }
 
 try {

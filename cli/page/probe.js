@@ -38,12 +38,7 @@ function cellReader(data) {
     values = values || Promise.all(data.layers.map(layer => layer.legend || layer.bar ? words(layer.values || layer.shares, width, height) : null));
     headings = headings || readHeadings(data);
     const read = await values, costs = await headings, index = (height - 1 - row) * width + column;
-    const table = document.createElement("table");
-    const add = (name, value) => {
-      const line = table.insertRow();
-      line.appendChild(document.createElement("th")).textContent = name;
-      line.insertCell().textContent = value;
-    };
+    const table = document.createElement("table"), add = (name, value) => addRow(table, name, [value]);
     data.layers.forEach((layer, i) => { if (read[i]) add(layer.name, valueText(layer, read[i][index])); });
     add("centre", placeText(data, b.west + (column + 0.5) * cell, b.south + (row + 0.5) * cell));
     add("cell", block > 1 ? `mean of ${block} x ${block} cells` : `column ${column}, row ${row}`);
@@ -58,26 +53,22 @@ function cellReader(data) {
   };
 }
 
+// Returns explain(column, row), which shows the values of a cell beside the map, or below it on a narrow screen.
 function probeCells(map, data, ruler) {
   const {width, height, cell} = data.grid, b = data.bounds;
   const style = {color: "#000", weight: 2, fill: false, interactive: false, className: "chosen"};
-  const frame = L.rectangle([[0, 0], [0, 0]], style);
-  const popup = L.popup({maxWidth: 330, className: "probe"}), read = cellReader(data);
+  const frame = L.rectangle([[0, 0], [0, 0]], style), read = cellReader(data);
   const sheet = document.getElementById("sheet"), shut = document.createElement("button");
   let chosen = null;
-  const close = () => { chosen = null; frame.remove(); sheet.hidden = true; };
-  map.on("popupclose", close);
   shut.textContent = "×";
   shut.setAttribute("aria-label", "close");
-  shut.addEventListener("click", close);
+  shut.addEventListener("click", () => { chosen = null; frame.remove(); sheet.hidden = true; });
 
-  // On a narrow screen the values stand below the map, because a popup would cover it.
   async function explain(column, row) {
     if (column < 0 || row < 0 || column >= width || row >= height) return;
-    const west = b.west + column * cell, south = b.south + row * cell, values = await read(column, row);
-    sheet.hidden = !matchMedia("(max-width: 50rem)").matches;
-    if (sheet.hidden) popup.setLatLng([south + cell / 2, west + cell / 2]).setContent(values).openOn(map);
-    else sheet.replaceChildren(shut, values);
+    const west = b.west + column * cell, south = b.south + row * cell;
+    sheet.replaceChildren(shut, await read(column, row));
+    sheet.hidden = false;
     chosen = {column, row};
     frame.setBounds([[south, west], [south + cell, west + cell]]).addTo(map);
   }
@@ -92,4 +83,5 @@ function probeCells(map, data, ruler) {
     event.preventDefault();
     event.stopPropagation();
   }, true);
+  return explain;
 }

@@ -92,7 +92,7 @@ function layoutOf(element, routes) {
   return {panels, step, panelHeight: step - 17, width: Math.max(200, element.clientWidth - 62)};
 }
 
-// Draws the profiles and returns {mark(s), draw()}. Calls onHover(s) when the pointer moves, with s the
+// Returns {mark(s), draw()} of the profiles. Calls onHover(s) when the pointer moves, with s the
 // distance from the start [m].
 function drawProfiles(element, routes, onHover) {
   const need = name => vegaModules["vega-" + name];
@@ -107,7 +107,6 @@ function drawProfiles(element, routes, onHover) {
     view.run();
     view.addSignalListener("hover", (_, value) => { if (!quiet) onHover(value * unit.metres); });
   };
-  draw();
   addEventListener("resize", draw);
   document.getElementById("quantity").addEventListener("change", draw);
   return {draw, mark(s) { quiet = true; view.signal("hover", s / unit.metres).run(); quiet = false; }};

@@ -1,6 +1,6 @@
 // Terrain in 3-D with the selected layer and the routes, drawn by three.js, which is loaded at the first use.
 // Axes: metres east, up and south of the map's centre; the page states the vertical exaggeration.
-function offerRelief(data) {
+function offerRelief(data, explain) {
   const button = document.getElementById("solid"), place = document.getElementById("relief");
   const text = document.getElementById("three");
   const elevation = data.layers.find(layer => layer.name === "elevation");
@@ -24,7 +24,7 @@ function offerRelief(data) {
     if (!relief) {
       document.head.appendChild(document.createElement("script")).textContent = text.textContent;
       const values = await words(elevation.values, data.grid.width, data.grid.height);
-      relief = await makeRelief(place, data, heightsOf(data, values, elevation), {canvas, context});
+      relief = await makeRelief(place, data, heightsOf(data, values, elevation), {canvas, context}, explain);
     }
     relief.fit();
     place.dataset.state = "ready";
@@ -152,24 +152,23 @@ function routeInSpace({points, colour: rim}, colours, spot, extent) {
 }
 
 // A click without dragging explains the cell under the pointer, as on the map.
-function explainOnClick(place, data, {renderer, camera, ground}) {
-  const box = place.querySelector(".probe"), read = cellReader(data), {west, south, east, north} = data.bounds;
+function explainOnClick({grid, bounds}, {renderer, camera, ground}, explain) {
   let from = null;
   renderer.domElement.addEventListener("pointerdown", event => { from = event; });
-  renderer.domElement.addEventListener("click", async event => {
+  renderer.domElement.addEventListener("click", event => {
     if (from && Math.hypot(event.clientX - from.clientX, event.clientY - from.clientY) > 4) return;
     const view = renderer.domElement.getBoundingClientRect(), ray = new THREE.Raycaster();
     ray.setFromCamera({x: 2 * (event.clientX - view.left) / view.width - 1, y: 1 - 2 * (event.clientY - view.top) / view.height}, camera);
     const [hit] = ray.intersectObject(ground);
-    box.hidden = !hit;
     if (!hit) return;
-    const {cell, width, height} = data.grid, inside = (at, count) => Math.min(Math.max(Math.floor(at / cell), 0), count - 1);
-    box.replaceChildren(await read(inside(hit.point.x + (east - west) / 2, width), inside((north - south) / 2 - hit.point.z, height)));
+    const {cell, width, height} = grid, inside = (at, count) => Math.min(Math.max(Math.floor(at / cell), 0), count - 1);
+    explain(inside(hit.point.x + (bounds.east - bounds.west) / 2, width),
+            inside((bounds.north - bounds.south) / 2 - hit.point.z, height));
   });
 }
 
 // Builds the relief view and returns {fit()}, which adapts the view to the size of its element.
-async function makeRelief(place, data, heights, surface) {
+async function makeRelief(place, data, heights, surface, explain) {
   const {west, south, east, north} = data.bounds;
   const extent = Math.max(east - west, north - south), note = place.firstElementChild;
   const renderer = new THREE.WebGLRenderer(surface);
@@ -227,7 +226,7 @@ async function makeRelief(place, data, heights, surface) {
   document.getElementById("quantity").addEventListener("change", raise);
   for (const id of ["layer", "opacity"]) document.getElementById(id).addEventListener("change", paint);
   addEventListener("resize", fit);
-  explainOnClick(place, data, {renderer, camera, ground});
+  explainOnClick(data, {renderer, camera, ground}, explain);
   const away = 1.7 * extent / Math.min(1, place.clientWidth / place.clientHeight);  // shows all
   camera.position.set(0, 0.6 * away, 0.8 * away);
   controls.update();

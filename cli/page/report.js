@@ -17,12 +17,15 @@ function domainOf({low, high, log}, series, place) {
   return [low ?? below, high ?? above];
 }
 
+// Series of points differ in shape, too, for readers and printers without colours.
+const shapes = ["circle", "cross", "square", "triangle-up", "diamond"];
+
 function seriesMark({name, colour, points, dashed, values}, k) {
   const many = values.length > 400;
   const at = {x: {scale: "x", field: "x"}, y: {scale: "y", field: "y"}};
   const look = points
-    ? {fill: {value: dashed ? "#fff" : colour}, stroke: {value: colour}, strokeWidth: {value: dashed ? 2 : 0},
-       size: {value: many ? 9 : values.length === 1 ? 90 : 24}, fillOpacity: {value: many ? 0.5 : 0.85},
+    ? {shape: {value: shapes[k % shapes.length]}, fill: {value: dashed ? "#fff" : colour}, stroke: {value: colour}, strokeWidth: {value: dashed ? 2 : 0},
+       size: {value: many ? 9 : values.length === 1 ? 90 : 24}, fillOpacity: {value: !many ? 0.85 : k === 0 ? 0.35 : 0.8},
        tooltip: {signal: `'${name.replace(/[\\']/g, "")}: ' + format(datum.x, '.4~g') + ', ' + format(datum.y, '.4~g')`}}
     : {stroke: {value: colour}, strokeWidth: {value: 1.8}, strokeDash: {value: dashed ? [5, 4] : []},
        defined: {signal: "isValid(datum.x) && isValid(datum.y)"}};
@@ -44,9 +47,11 @@ function chartSpec({title, x, y, series}, width) {
       {name: "colour", type: "ordinal", domain: named.map(({name}) => name), range: named.map(({colour}) => colour)},
       {name: "inside", type: "ordinal", domain: named.map(({name}) => name),
        range: named.map(({colour, dashed}) => dashed ? "#fff" : colour)},
+      {name: "shape", type: "ordinal", domain: named.map(({name}) => name),
+       range: named.map(one => shapes[one.points ? series.indexOf(one) % shapes.length : 0])},
     ],
     axes: [axis("bottom", "x", x), axis("left", "y", y)],
-    legends: named.length ? [{fill: "inside", stroke: "colour", orient: "bottom", columns: width > 360 ? 3 : 2, symbolType: "circle"}] : [],
+    legends: named.length ? [{fill: "inside", stroke: "colour", shape: "shape", orient: "bottom", columns: width > 360 ? 3 : 2}] : [],
     marks: series.map(seriesMark),
   };
 }

@@ -1,4 +1,4 @@
-// A simulated traverse: the slider selects a time; the map shows the track, the planned route and the reclassified
+// A simulated traverse: the slider selects a time, at first the last one; the map shows the track, the planned route and the reclassified
 // cells at that time, and rings around the soft patches that the planner does not know.
 function showStory(map, story) {
   const at = ([x, y]) => [y, x];
@@ -6,6 +6,10 @@ function showStory(map, story) {
   const moment = document.getElementById("moment"), status = document.getElementById("status");
   const play = document.getElementById("play");
   document.getElementById("story").hidden = false;
+  const dashes = colour => `repeating-linear-gradient(90deg, ${colour} 0 6px, #fff 6px 9px)`;
+  showLegend("track", {name: "traverse", legend: [
+    {colour: "#222", label: "driven"}, {colour: dashes("#1b3fbf"), label: "planned"},
+    {colour: dashes("#7a1fa2"), label: "soft patch, unknown to the planner"}]});
   moment.max = track.length - 1;
 
   const cells = L.layerGroup().addTo(map);
@@ -43,7 +47,7 @@ function showStory(map, story) {
     showCells(now.time);
     const latest = past.slice(-4).map(event => `${event.time.toFixed(0)} s ${event.text}`).join(" · ");
     status.textContent = `${now.time.toFixed(0)} s · slip ${now.slip.toFixed(2)} · sinkage ${(1000 * now.sinkage).toFixed(0)} mm · ` +
-      `${now.energy.toFixed(2)} kJ · ${drawn.length} cells reclassified\n${latest}`;
+      `${now.energy.toFixed(2)} kJ · ${drawn.length} reclassifications\n${latest}`;
   }
 
   let timer = 0;
@@ -61,7 +65,7 @@ function showStory(map, story) {
   });
   moment.addEventListener("input", () => { stop(); show(+moment.value); });
   const step = /^#(\d+)$/.exec(location.hash);  // page.html#120 opens at the 120th step
-  moment.value = step ? Math.min(+step[1], track.length - 1) : 0;
+  moment.value = step ? Math.min(+step[1], track.length - 1) : track.length - 1;
   show(+moment.value);
   return {show(time) {
     stop();

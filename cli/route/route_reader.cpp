@@ -26,15 +26,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string quoted(const std::string& word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 bool decidesNothing(std::string_view word) {
   constexpr std::array<std::string_view, 3> kFlags{"--json", "--quiet", "--force"};
   return std::find(kFlags.begin(), kFlags.end(), word) != kFlags.end();
@@ -67,7 +58,7 @@ std::string callText(const char* const* argv) {
       if (name == whole && word[1] != nullptr) ++word;
       continue;
     }
-    text += " " + quoted(std::string(whole));
+    text += " " + shellWord(std::string(whole));
   }
   return text;
 }

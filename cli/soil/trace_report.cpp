@@ -649,21 +649,21 @@ void effects(HtmlReport& page, const TableTrace& trace) {
   page.table({"effect", "form", "equal causes", "how to discriminate"}, forms);
 }
 
-// Errors on the rows of the fit and on those held out.
+// Errors on the rows of the fit and on those held out, in a table each.
 void errors(HtmlReport& page, const TableTrace& trace) {
   const TraceResult& r = trace.result;
-  std::vector<std::vector<std::string>> rows;
   const auto add = [&](const std::string& what, const ChannelErrors& base, const ChannelErrors& refined) {
+    std::vector<std::vector<std::string>> rows;
     for (Channel c : kAllChannels)
       if (const auto k = static_cast<std::size_t>(c); r.trial.has(c))
-        rows.push_back({what, name(c), fmt::format("{:.4f}", base[k]), fmt::format("{:.4f}", refined[k]),
+        rows.push_back({name(c), fmt::format("{:.4f}", base[k]), fmt::format("{:.4f}", refined[k]),
                         fmt::format("{:.4f}", r.noise_floor[k])});
+    page.table({what, "base", "refined", "noise floor"}, rows);
   };
-  add("of the fit", r.base_rmse, r.refined_rmse);
+  page.paragraph("Root mean square errors. The noise floor is the error from sensor noise alone.");
+  add("rows of the fit", r.base_rmse, r.refined_rmse);
   for (const HeldOut& held : trace.held_out)
     add("held out: " + held.scheme, held.base_rmse, held.refined_rmse);
-  page.paragraph("Root mean square errors. The noise floor is the error from sensor noise alone.");
-  page.table({"rows", "channel", "base", "refined", "noise floor"}, rows);
 }
 
 void tests(HtmlReport& page, const TraceResult& r) {
@@ -699,9 +699,11 @@ std::string tracePage(const TableTrace& trace) {
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
   errors(page, trace);
+  std::vector<NamedPredictions> predictions{{"base", base}};
+  if (!r.effects.empty()) predictions.emplace_back("refined", level);  // otherwise the same
   std::vector<Plot> plots;
   for (Channel c : kAllChannels)
-    if (r.trial.has(c)) plots.push_back(overSlip(c, r.trial, {{"base", base}, {"refined", level}}));
+    if (r.trial.has(c)) plots.push_back(overSlip(c, r.trial, predictions));
   page.charts(plots);
   curves(page, r, level, sinkage);
   effects(page, trace);

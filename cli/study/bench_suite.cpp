@@ -334,7 +334,8 @@ Plot gapOverTime(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& run
   constexpr double kSoonest_s = 1e-3;  // a logarithmic axis has no 0
   double end_s = kSoonest_s;
   for (const BenchmarkRun& run : runs)
-    if (run.case_index == case_index) end_s = std::max(end_s, run.seconds);
+    if (run.case_index == case_index)
+      end_s = std::max(end_s, 1.2 * run.seconds);  // beyond the slowest planner
   for (const BenchmarkRun& run : runs) {
     if (run.case_index != case_index || run.seed != 1 || !planner::stands(run) || run.progress.empty())
       continue;

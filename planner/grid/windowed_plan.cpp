@@ -353,7 +353,7 @@ Plan planLeg(Problem& leg, WindowedMap& map) {
     Plan none;
     none.reason =
         "no route found on the overview; plan on a part with --window, or on the whole map with "
-        "--whole-field";
+        "--in-memory";
     return none;
   }
   Plan plan;

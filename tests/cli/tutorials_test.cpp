@@ -71,7 +71,9 @@ TEST_P(Tutorial, CommandsProduceTheStatedOutput) {
   const Folder folder;
   fs::create_directory(folder.path() / "bin");
   fs::create_symlink(TALUS_PROGRAM, folder.path() / "bin/talus");
-  fs::copy_file(source / "examples/hill.asc", folder.path() / "hill.asc");
+  const fs::path installed = folder.path() / "share/doc/talus";
+  fs::create_directories(installed);
+  fs::create_directory_symlink(source / "examples", installed / "examples");
   folder.write("bin/talus.pc",
                "Name: talus\nDescription: of this build\nVersion: 0\nCflags: -I" TALUS_HEADERS "\n");
   const std::vector<Command> commands = commandsOf(source / "docs/tutorials" / (GetParam() + ".md"), folder);

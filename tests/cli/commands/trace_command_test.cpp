@@ -75,9 +75,9 @@ TEST(TraceCommand, PageShowsVerdictErrorsAndEachEffectWithItsData) {
   ASSERT_EQ(ran.code, 0) << ran.err;
   const std::string page = fileContent(folder / "r.html");
   std::size_t last = 0;
-  for (const char* part :
-       {"Verdict: explained by 1 effect", "<td>of the fit</td>", "label=\"drawbar_pull_over_load over slip\"",
-        "load_cell_tilt: drawbar_pull_over_load", "Effects missing from the base model"}) {
+  for (const char* part : {"Verdict: explained by 1 effect", "<th>rows of the fit</th>",
+                           "label=\"drawbar_pull_over_load over slip\"",
+                           "load_cell_tilt: drawbar_pull_over_load", "Effects missing from the base model"}) {
     const std::size_t at = page.find(part);
     ASSERT_NE(at, std::string::npos) << part;
     EXPECT_GT(at, last) << part;

@@ -130,10 +130,10 @@ TEST(Page, CellValuesEqualThoseOfExplain) {
       for (const key of keys) {
         press(key);
         await new Promise(done => setTimeout(done, 150));
-        said.push([...document.querySelectorAll(".leaflet-popup-content tr")].map(row => row.textContent).join("|"));
+        said.push([...document.querySelectorAll("#sheet tr")].map(row => row.textContent).join("|"));
       }
       root.said = said.join(";");
-      document.querySelector(".leaflet-popup-close-button").click();
+      document.querySelector("#sheet button").click();
       root.chosen = document.querySelectorAll("path.chosen").length;
     })();)"));
   std::smatch said;
@@ -183,7 +183,7 @@ TEST(Page, RulerMeasuresDistanceAndBearing) {
     click(100, 300);
     click(100 + parseFloat(bar.style.width), 300);
     root.measured = document.querySelector(".leaflet-tooltip").textContent + "|" + bar.textContent;
-    root.popups = document.querySelectorAll(".leaflet-popup").length;
+    root.sheet = document.getElementById("sheet").hidden;
     map.dispatchEvent(new KeyboardEvent("keydown", {key: "Escape", bubbles: true}));
     root.left = document.querySelectorAll("path.ruler, .leaflet-tooltip").length;)"));
   std::smatch said;
@@ -193,7 +193,7 @@ TEST(Page, RulerMeasuresDistanceAndBearing) {
       << head.substr(0, 300) << shown.console;
   // The length of the scale bar agrees with its label to one pixel.
   EXPECT_NEAR(std::stod(said[1]) / std::stod(said[2]), 1.0, 0.03);
-  EXPECT_THAT(head, HasSubstr("data-popups=\"0\""));
+  EXPECT_THAT(head, HasSubstr("data-sheet=\"true\""));
 }
 
 // Property: on a screen of 1400 x 900 pixels and on a phone, map and profile are visible without scrolling,
@@ -294,7 +294,7 @@ constexpr const char* kOpenRelief = R"(
     shown.dispatchEvent(new PointerEvent("pointerdown", spot));
     shown.dispatchEvent(new MouseEvent("click", spot));
     const probe = setInterval(() => {
-      const text = document.querySelector("#relief .probe").textContent;
+      const text = document.querySelector("#sheet table")?.textContent;
       if (!text) return;
       clearInterval(probe);
       root.probed = text;
@@ -357,7 +357,7 @@ TEST(Page, PrintsLegendAndCellBesideTheMap) {
     const map = document.getElementById("map"), at = map.getBoundingClientRect();
     map.dispatchEvent(new MouseEvent("click", {bubbles: true, clientX: at.left + 300, clientY: at.top + 300}));
     const print = () => {
-      if (!map.querySelector(".probe table")) return void setTimeout(print, 50);
+      if (!document.querySelector("#sheet table")) return void setTimeout(print, 50);
       dispatchEvent(new Event("beforeprint"));
       const box = part => document.querySelector(part).getBoundingClientRect(), paper = box("body"), sheet = box("#map");
       const seen = ["#key #legend", "#key table"].map(part => {
@@ -366,7 +366,7 @@ TEST(Page, PrintsLegendAndCellBesideTheMap) {
       });
       seen.push(sheet.height > 300, box("#facts").bottom <= paper.bottom);
       dispatchEvent(new Event("afterprint"));
-      seen.push(map.querySelector(".legend #legend") && map.querySelector(".probe table") ? true : false);
+      seen.push(map.querySelector(".legend #legend") && document.querySelector("#sheet table") ? true : false);
       document.documentElement.dataset.seen = seen.join();
     };
     print();)"));

@@ -1,4 +1,9 @@
+#include <algorithm>
+
+#include <CLI/CLI.hpp>
+
 #include <talus/cli/ground/mission.hpp>
+#include <talus/cli/ground/plan_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
@@ -19,9 +24,17 @@ constexpr const char* kMission =
     "planner: hybrid\nstart: [1, 2]\ngoal: [[10, 20], '30,40']\nvia: '5,6'\n"
     "tolerance_m: 1.5\ntime_s: 20\nstart_heading_deg: 90\nreverse: false\noutput: r.geojson\n";
 
-PlanOptions readIn(const Folder& folder, PlanOptions options = {}) {
-  options.ground.elevation.path = folder.write("m.yaml", kMission);
+// Reads a mission as `talus plan m.yaml WORDS` does.
+PlanOptions readIn(const Folder& folder, std::vector<std::string> words = {},
+                   const std::string& mission = kMission) {
+  CLI::App call;
+  PlanOptions options;
+  bindPlan(call, options);
+  words.insert(words.begin(), folder.write("m.yaml", mission));
+  std::ranges::reverse(words);
+  call.parse(words);
   readMission(options);
+  options.ground.call = nullptr;
   return options;
 }
 
@@ -54,17 +67,12 @@ TEST(Mission, EveryMissionFieldIsRead) {
 // Property: values from the command line have precedence over the mission file, such as stricter thresholds.
 TEST(Mission, CommandLineOverridesTheMission) {
   const Folder folder;
-  PlanOptions said;
-  said.ground.rover = "fido";
-  said.ground.elevation.read.resolution_m = 0.5;
-  said.ground.policy.allow_marginal = false;
-  said.ground.policy.risk_weight_J = 7e8;
-  said.goals = {"3,3"};
-  said.planner = "RRTstar";
-  said.tolerance_m = 0.25;
-  said.drive.start_heading_rad = 0.1;
-  const PlanOptions plan = readIn(folder, said);
+  const PlanOptions plan =
+      readIn(folder, {"--rover", "fido", "--resolution", "0.5", "--no-marginal", "--risk-weight", "7e8",
+                      "--goal", "3,3", "--planner", "RRTstar", "--tolerance", "0.25", "--start-heading",
+                      "0.1", "--keep-out", "own.json"});
   EXPECT_EQ(plan.ground.rover, "fido");
+  EXPECT_EQ(plan.ground.elevation.path, folder / "dem.tif");
   EXPECT_EQ(plan.ground.elevation.read.resolution_m, 0.5);
   EXPECT_FALSE(plan.ground.policy.allow_marginal);
   EXPECT_EQ(plan.ground.policy.risk_weight_J, 7e8);
@@ -73,6 +81,21 @@ TEST(Mission, CommandLineOverridesTheMission) {
   EXPECT_EQ(plan.planner, "RRTstar");
   EXPECT_EQ(plan.tolerance_m, 0.25);
   EXPECT_EQ(plan.drive.start_heading_rad, 0.1);
+  EXPECT_THAT(plan.ground.keep_out, ElementsAre("own.json", folder / "area.json"));  // both apply
+}
+
+// Property: an option that equals its default value has precedence, too.
+TEST(Mission, DefaultsStatedOnTheCommandLineOverrideTheMission) {
+  const Folder folder;
+  const PlanOptions plan =
+      readIn(folder, {"--planner", "field", "--tolerance", "0", "--slope-uncertainty-deg", "5",
+                      "--time-weight", "1", "--risk-weight", "1e8"});
+  EXPECT_EQ(plan.planner, "field");
+  EXPECT_EQ(plan.tolerance_m, 0.0);
+  EXPECT_EQ(plan.ground.policy, costmap::TravelPolicy{});
+  const PlanOptions other = readIn(folder, {"--soil", "sand"}, "maps: {dem: dem.tif}\nmodel: m.yaml\n");
+  EXPECT_EQ(other.ground.soil, "sand");
+  EXPECT_EQ(other.ground.model, "");  // would take the place of the soil
 }
 
 TEST(Mission, ErrorsNameFileAndField) {
