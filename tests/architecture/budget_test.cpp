@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 700},    {"terramech", 19715}, {"maps", 6710},     {"costmap", 12297},
-                           {"planner", 22424}, {"cli", 13774},       {"examples", 1538}, {"tests", 56313}};
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 19719}, {"maps", 6710},     {"costmap", 12415},
+                           {"planner", 22437}, {"cli", 13732},       {"examples", 1538}, {"tests", 56396}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

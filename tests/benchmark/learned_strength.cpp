@@ -1,16 +1,17 @@
-// Strength that a map learns on ground weaker or stronger than its class, from drives with and without slip
-// bias: rover mer, class mars_crusty, 96 x 96 m of steepening waves, four lines, uniform ground, no torque.
-// One row for each truth.
+// Strength that one drive teaches of soils drawn from the prior of a class, by the fault of its slip sensor, with one
+// slip and with two: learned_strength SOIL ROVER DRIVES. 160 m over waves, sensor noise 0.01, second slip 0.02.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
-#include <numbers>
+#include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
-#include <talus/costmap/costmap.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
+#include <talus/costmap/telemetry/drive_posterior.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
 namespace {
@@ -18,129 +19,109 @@ namespace {
 using namespace talus;
 using namespace talus::costmap;
 
-constexpr int kSide = 96;
-
-MapLayers waves() {
-  MapLayers layers;
-  const maps::Grid grid{.width = kSide, .height = kSide, .resolution_m = 1.0, .south_west = {}};
-  layers.elevation.elevation_m = maps::Raster<float>(grid);
-  layers.classes = maps::Raster<std::uint8_t>(grid, 1);
-  for (int row = 0; row < kSide; ++row)
-    for (int column = 0; column < kSide; ++column)
-      layers.elevation.elevation_m[{column, row}] = static_cast<float>(
-          (0.3 + 0.9 * column / kSide) * std::sin(0.19 * column) + 0.4 * std::sin(0.11 * row));
-  return layers;
+GroundModel modelOf(const terramech::Rover& rover, const GroundClass& ground) {
+  return GroundModel({.rover = rover, .classes = {ground}, .policy = {}});
 }
 
-std::shared_ptr<const GroundModel> modelOf(const terramech::Rover& rover, GroundClass ground,
-                                           double strength) {
-  ground.soil.cohesion_Pa *= strength;
-  ground.soil.friction_angle_rad = std::atan(strength * std::tan(ground.soil.friction_angle_rad));
-  return std::make_shared<GroundModel>(GroundModel::Parts{.rover = rover, .classes = {ground}, .policy = {}});
+// A soil of the class: each parameter within two deviations.
+GroundClass drawn(GroundClass ground, const terramech::SoilDeviation& std, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  const auto draw = [&](double& value, double deviation) {
+    value = std::max(value + deviation * std::clamp(normal(random), -2.0, 2.0), 0.3 * value);
+  };
+  draw(ground.soil.cohesion_Pa, std.cohesion_Pa);
+  draw(ground.soil.friction_angle_rad, std.friction_angle_rad);
+  draw(ground.soil.sinkage_exponent, std.sinkage_exponent);
+  draw(ground.soil.frictional_modulus, std.frictional_modulus);
+  draw(ground.soil.shear_modulus_m, std.shear_modulus_m);
+  draw(ground.soil.rut_stiffness, std.rut_stiffness);
+  return ground;
 }
 
-double pullAt(const GroundModel& model, double slip) {
-  return (model.steady(0, {.slip = slip}).drawbar_pull_over_load +
-          2.0 * model.steady(0, {.slip = slip, .in_rut = true}).drawbar_pull_over_load) /
-         3.0;
-}
-
-double slipOn(const GroundModel& model, double gradient) {
-  double low = -0.5, high = 0.95;
-  while (high - low > 1e-4) (pullAt(model, 0.5 * (low + high)) < gradient ? low : high) = 0.5 * (low + high);
-  return low;
-}
-
-using Read = std::function<double(double slip, double of_class)>;
-
-// `twice`: true if the file states the speeds of the rover and of the rims as well.
-terramech::Telemetry drive(const TraversabilityMap& map, const GroundModel& truth, const Read& read,
-                           bool twice) {
-  std::vector<const char*> names{"time_s",    "x_m",  "y_m",    "heading_rad",
-                                 "slope_rad", "slip", "load_N", "pass_index"};
-  if (twice) names.insert(names.end(), {"rim_speed_mps", "speed_mps"});
-  terramech::Telemetry out;
-  for (const char* name : names) out.numbers.push_back({name, {}});
-  out.words = {{"run", {}}, {"wheel", {}}};
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> noise;
-  int line = 0;
-  for (const double y_m : {16.5, 36.5, 56.5, 76.5}) {
-    const double way = line++ % 2 == 0 ? 1.0 : -1.0;
-    for (int i = 0; i < 250; ++i) {
-      const double x_m = 48.0 + way * (0.35 * i - 43.5);
-      const double gradient = way * map.published()->at(*map.grid().cellAt({x_m, y_m})).dzDx(),
-                   slip = slipOn(truth, gradient);
-      if (slip > 0.75) continue;
-      const double seen = read(slip + 0.015 * noise(random), slipOn(map.model(), gradient));
-      const double speed_mps = 0.2 * (1.0 - slip + 0.015 * noise(random));
-      const double slope_rad = std::atan(gradient) + 0.005 * noise(random);
-      for (int w = 0; w < 6; ++w) {
-        const double row[] = {2.0 * i,
-                              x_m + way * (0.4 - 0.4 * (w / 2)),
-                              y_m + (w % 2 == 0 ? 0.3 : -0.3),
-                              way > 0.0 ? 0.0 : std::numbers::pi,
-                              slope_rad,
-                              std::clamp(seen + 0.005 * noise(random), -1.0, 1.0),
-                              terramech::wheelLoad_N(map.model().rover()),
-                              w / 2 + 1.0,
-                              0.2,
-                              speed_mps};
-        for (std::size_t c = 0; c < names.size(); ++c) out.numbers[c].values.push_back(row[c]);
-        out.words[0].values.push_back("line" + std::to_string(line));
-        out.words[1].values.push_back("w" + std::to_string(w));
-        out.lines.push_back(out.lines.size() + 2);
-      }
+// Mean slip of all wheels on a gradient, the first axle on fresh ground; at most 0.9.
+class Slip {
+ public:
+  explicit Slip(const GroundModel& ground) {
+    const int axles = ground.rover().wheel_count / 2;
+    for (int i = 0; i <= kSteps; ++i) {
+      const SteadyWheel fresh = ground.steady(0, {.slip = at(i)}),
+                        rut = ground.steady(0, {.slip = at(i), .in_rut = true});
+      pull_.push_back((fresh.drawbar_pull_over_load + (axles - 1) * rut.drawbar_pull_over_load) / axles);
     }
   }
-  return out;
-}
+  double on(double gradient) const {
+    const auto reached = std::ranges::find_if(pull_, [&](double pull) { return pull >= gradient; });
+    return at(static_cast<int>(reached - pull_.begin()));
+  }
 
-// Numbers of cells allowed uphill that the true soil supports, and that it does not.
-std::pair<int, int> allowed(const TraversabilityMap& map, const GroundModel& truth) {
-  std::pair<int, int> cells{0, 0};
-  for (int row = 0; row < kSide; ++row)
-    for (int column = 0; column < kSide; ++column) {
-      const auto at = map.published()->at({column, row});
-      const double gradient = std::hypot(at.dzDx(), at.dzDy());
-      if (map.model().state(0, *map.ground({column, row}), gradient).refusal != Refusal::None) continue;
-      ++(pullAt(truth, 0.8) >= gradient ? cells.first : cells.second);
-    }
-  return cells;
+ private:
+  static constexpr int kSteps = 1400;
+  static double at(int i) { return std::min(-0.5 + 0.001 * i, 0.9); }
+  std::vector<double> pull_;
+};
+
+// Reading of the slip sensor for a slip, the slip of the class, the gradient and the number of the moment.
+using Read = std::function<double(double slip, double of_class, double gradient, int moment)>;
+
+DriveEstimate drive(const GroundModel& of_class, const GroundModel& truth, const Read& read, bool twice,
+                    std::mt19937_64& random) {
+  std::normal_distribution<double> noise;
+  DrivePosterior posterior(of_class);
+  const Slip of_truth(truth), of_prior(of_class);
+  const int wheels = truth.rover().wheel_count;
+  const double phase = 3.0 * noise(random);
+  for (int i = 0; i < 400; ++i) {
+    const double x_m = 0.4 * i,
+                 gradient = 0.13 * std::sin(0.35 * x_m + phase) + 0.09 * std::sin(0.11 * x_m + 1.0),
+                 slip = of_truth.on(gradient);
+    if (slip > 0.7) continue;
+    posterior.take(
+        {.rutted = wheels - 2,
+         .wheels = wheels,
+         .place = {x_m, 0.0},
+         .gradient = gradient + 0.005 * noise(random),
+         .map_gradient = gradient,
+         .slip = read(slip, of_prior.on(gradient), gradient, i) + 0.01 * noise(random),
+         .second_slip = twice ? slip + 0.02 * noise(random) : std::numeric_limits<double>::quiet_NaN()});
+  }
+  return posterior.fitted();
 }
 
 }  // namespace
 
-int main() {
-  const terramech::Rover rover = terramech::loadRover("mer");
-  const GroundClass ground = groundClass(1, terramech::loadSoilPrior("mars_crusty"), rover);
+int main(int count, char** arguments) {
+  if (count != 4) return std::fprintf(stderr, "learned_strength SOIL ROVER DRIVES\n"), 1;
+  const terramech::Rover rover = terramech::loadRover(arguments[2]);
+  const terramech::SoilPrior prior = terramech::loadSoilPrior(arguments[1]);
+  const GroundClass ground = groundClass(1, prior, rover);
+  const GroundModel of_class = modelOf(rover, ground);
   const std::pair<const char*, Read> sensors[] = {
-      {"as it is", [](double slip, double) { return slip; }},
-      {"- 0.1", [](double slip, double) { return slip - 0.1; }},
-      {"x 0.8", [](double slip, double) { return 0.8 * slip; }},
-      {"x 0.5", [](double slip, double) { return 0.5 * slip; }},
-      {"x 0.3", [](double slip, double) { return 0.3 * slip; }},
-      {"+ 0.1", [](double slip, double) { return slip + 0.1; }},
-      {"of the class", [](double, double of_class) { return of_class; }}};
-  std::printf(
-      "| truth | slip | slips | offset, scale found | learned | if sound | counted on | held cells allowed | "
-      "others allowed |\n"
-      "|---|---|---|---|---|---|---|---|---|\n");
-  for (const bool twice : {false, true})
-    for (const double strength : {0.81, 0.9, 1.0, 1.1, 1.22, 1.4}) {
-      const auto truth = modelOf(rover, ground, strength);
-      for (const auto& [name, read] : sensors) {
-        TraversabilityMap map(waves(), modelOf(rover, ground, 1.0), {});
-        const auto before = allowed(map, *truth);
-        const DriveReport report = addDrive(map, drive(map, *truth, read, twice));
-        const auto after = allowed(map, *truth);
-        if (report.learned.empty()) continue;
-        const LearnedClass& one = report.learned.front();
-        std::printf(
-            "| %.3f | %s | %s | %+.2f, %.2f | %.3f +- %.3f | %.3f +- %.3f | %.3f | %d -> %d | %d -> %d |\n",
-            truth->reference(0, false).drawbar_pull_over_load, name, twice ? "two" : "one",
-            report.slip_offset, report.slip_scale, one.pull.value, one.pull.std, one.if_sound.value,
-            one.if_sound.std, one.counted_on, before.first, after.first, before.second, after.second);
+      {"as it is", [](double slip, double, double, int) { return slip; }},
+      {"+ 0.08", [](double slip, double, double, int) { return slip + 0.08; }},
+      {"x 0.8", [](double slip, double, double, int) { return 0.8 * slip; }},
+      {"x 0.5", [](double slip, double, double, int) { return 0.5 * slip; }},
+      {"at most 0.15", [](double slip, double, double, int) { return std::min(slip, 0.15); }},
+      {"uphill x 0.4", [](double slip, double, double g, int) { return g > 0.0 ? 0.4 * slip : slip; }},
+      {"step of 0.08", [](double slip, double, double, int i) { return i > 200 ? slip + 0.08 : slip; }},
+      {"of the class", [](double, double slip, double, int) { return slip; }}};
+  std::printf("| slip | slips | bias | rms error | std | within one, two std |\n|---|---|---|---|---|---|\n");
+  for (const auto& [name, read] : sensors)
+    for (const bool twice : {false, true}) {
+      double bias = 0.0, square = 0.0, std = 0.0, one = 0.0, two = 0.0;
+      const int drives = std::atoi(arguments[3]);
+      for (int i = 0; i < drives; ++i) {
+        std::mt19937_64 random(1000U + static_cast<unsigned>(i));
+        const GroundModel truth = modelOf(rover, drawn(ground, prior.deviation, random));
+        const Estimate found = drive(of_class, truth, read, twice, random).classes[0].departure;
+        const double off = found.value - truth.reference(0, false).drawbar_pull_over_load +
+                           of_class.reference(0, false).drawbar_pull_over_load;
+        bias += off / drives;
+        square += off * off / drives;
+        std += found.std / drives;
+        one += std::abs(off) < found.std ? 1.0 / drives : 0.0;
+        two += std::abs(off) < 2.0 * found.std ? 1.0 / drives : 0.0;
       }
+      std::printf("| %s | %s | %+.3f | %.3f | %.3f | %.2f, %.2f |\n", name, twice ? "two" : "one", bias,
+                  std::sqrt(square), std, one, two);
     }
 }
