@@ -154,18 +154,6 @@ class SlopeEquilibrium {
   std::shared_ptr<const Solver> solver_;
 };
 
-/// Energy and time of a turn per radian of heading change, in addition to those of the path length.
-struct TurnEffort {
-  double energy_J = 0.0;  ///< energy [J/rad], >= 0, includes hotel power (power independent of driving)
-  double time_s = 0.0;    ///< time [s/rad], >= 0
-};
-
-/// Efforts of a turn while driving on an arc, of a turn in place, and of a change of direction at a vertex of a
-/// polyline: in place if the rover can turn in place, otherwise on an arc.
-struct TurnEfforts {
-  TurnEffort on_arc, in_place, at_vertex;
-};
-
 /// Returns the assumptions that replace missing values of a rover file, one sentence each. The result is
 /// empty for a complete file.
 std::vector<std::string> slopeAssumptions(const Rover& rover);

@@ -3,7 +3,6 @@
 #include <array>
 
 #include <talus/terramech/contact/wheel_on_soil.hpp>
-#include <talus/terramech/mobility/slope_equilibrium.hpp>
 
 namespace talus::terramech {
 
