@@ -282,6 +282,7 @@ struct TravelForecast {
   static constexpr int kDeviates = 15;
   static constexpr double deviate(int k) noexcept { return -3.5 + 0.5 * k; }
   std::array<float, kDeviates> energy_J_per_m{}, time_s_per_m{};
+  double added_J_per_m = 0.0;  ///< energy that a layer adds, whatever the ground
   /// Energy and time with all axles on fresh ground, over those with later axles in ruts.
   double fresh_energy = 0.0, fresh_time = 0.0;
   double fails_below = -10.0;  ///< departure below which the motion fails, in standard deviations

@@ -259,7 +259,7 @@ double GroundStates::steepest(double gradient) const {
 }
 
 TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const {
-  TravelForecast out{.fails_below = 0.0};
+  TravelForecast out{.added_J_per_m = added_J_per_m_, .fails_below = 0.0};
   const StrengthOfClass& of = classes_.front();
   TravelCurve::forNodesAround(gradient, [&](int row, int bin, double weight) {
     if (!of.lattice->contains(bin)) return;
@@ -272,8 +272,7 @@ TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const
     for (int d = 0; d < TravelForecast::kDeviates; ++d) {
       const double excess = reserve + TravelForecast::deviate(d) * of.strength.std;
       const auto k = static_cast<std::size_t>(d);
-      out.energy_J_per_m[k] +=
-          static_cast<float>(scale * column.at(StrengthColumn::kEnergy, excess) + weight * added_J_per_m_);
+      out.energy_J_per_m[k] += static_cast<float>(scale * column.at(StrengthColumn::kEnergy, excess));
       out.time_s_per_m[k] += static_cast<float>(scale * column.at(StrengthColumn::kTime, excess));
     }
   });

@@ -143,6 +143,7 @@ costmap::TravelForecast forecastOn(const Stretch& stretch, const Route& route, c
   for (auto* values : {&forecast.energy_J_per_m, &forecast.time_s_per_m})
     for (float& value : *values)
       value = std::isfinite(value) ? value * static_cast<float>(stretch.metres) : 0.0F;
+  forecast.added_J_per_m *= stretch.metres;
   return forecast;
 }
 
@@ -308,7 +309,8 @@ RouteForecast routeForecast(const Route& route, const costmap::CostGrid& map,
       for (std::size_t k = 0; k < way.size(); ++k) {
         const double u = sign * departure[k],
                      rut = fresh[std::min(static_cast<std::size_t>(way[k].soil_class), ruts.size())];
-        energy += valueAt(along[k].energy_J_per_m, u) * (1.0 + rut * (along[k].fresh_energy - 1.0));
+        energy += along[k].added_J_per_m +
+                  valueAt(along[k].energy_J_per_m, u) * (1.0 + rut * (along[k].fresh_energy - 1.0));
         time += valueAt(along[k].time_s_per_m, u) * (1.0 + rut * (along[k].fresh_time - 1.0));
         fails = fails || u < along[k].fails_below;
       }
