@@ -28,11 +28,9 @@ struct CommandText {
   std::string examples;     ///< at least two example calls, each on lines indented by two blanks
 };
 
-/// Registers a subcommand. `bind` declares the options of the subcommand as fields of a plain struct.
-/// `run(options, context)` receives the parsed struct and returns the exit code of the program. main() prints exceptions.
 template <typename Options, typename Run>
-CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
-                     void (*bind)(CLI::App&, Options&), Run run) {
+CLI::App& registerCommand(CLI::App& app, Context& context, const CommandText& text,
+                          void (*bind)(CLI::App&, Options&), Run run) {
   CLI::App& command = *app.add_subcommand(text.name, text.description)->group(text.group);
   command.set_help_flag("-h,--help", "print this help; `talus --help` lists the options of all calls");
   command.footer("Examples:\n" + text.examples);
@@ -45,6 +43,20 @@ CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
     context.exit_code = run(*options, context);
   });
   return command;
+}
+
+/// Registers a subcommand. `bind` declares the options of the subcommand as fields of a plain struct.
+/// `run(options, context)` receives the parsed struct and returns the exit code of the program. main() prints exceptions.
+template <typename Options>
+CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
+                     void (*bind)(CLI::App&, Options&), int (*run)(const Options&, Context&)) {
+  return registerCommand(app, context, text, bind, run);
+}
+/// The same for a command that a mission completes.
+template <typename Options>
+CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
+                     void (*bind)(CLI::App&, Options&), int (*run)(Options&, Context&)) {
+  return registerCommand(app, context, text, bind, run);
 }
 
 }  // namespace talus::cli

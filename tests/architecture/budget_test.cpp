@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 700},    {"terramech", 19718}, {"maps", 6710},     {"costmap", 12415},
-                           {"planner", 22439}, {"cli", 13732},       {"examples", 1538}, {"tests", 56396}};
+                           {"planner", 22439}, {"cli", 13744},       {"examples", 1538}, {"tests", 56396}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -235,7 +235,7 @@ TEST(ClassEvidence, HypothesesEqualBruteForce) {
         const double p = faulty[static_cast<int>(pulls[static_cast<std::size_t>(d)].source.trust)];
         const double y = pulls[static_cast<std::size_t>(d)].pull - kPrior;
         if ((set >> d & 1U) != 0) {
-          const double v = std::pow(2.0 * kQ, 2) + error[static_cast<std::size_t>(d)];
+          const double v = std::pow(2.0 * kQ, 2) + kP * kP / places + error[static_cast<std::size_t>(d)];
           weight *= p * std::exp(-0.5 * y * y / v) / std::sqrt(v);
         } else {
           weight *= 1.0 - p;
