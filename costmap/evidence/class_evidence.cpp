@@ -191,7 +191,8 @@ ClassState ClassEvidence::state(double step) const {
       for (const bool faulty : {false, true}) {
         const double of_fault = kFaulty[static_cast<std::size_t>(source.trust)],
                      error = heard.back().variance;
-        const double variance = error + (faulty ? kFaultStd * kFaultStd * q2 + of_places : 1.0 / before.precision);
+        const double variance =
+            error + (faulty ? kFaultStd * kFaultStd * q2 + of_places : 1.0 / before.precision);
         const double off = heard.back().mean - (faulty ? 0.0 : before.sum / before.precision);
         Hypothesis h = before;
         h.log_weight +=

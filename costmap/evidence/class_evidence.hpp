@@ -97,8 +97,9 @@ struct ClassState {
 /// places driven, D' = D + mean of f has the variance q^2 + p^2/W. The mean reading of source s is
 ///   y_s = D' + e_s,  var e_s = c_s^2 + p^2/W_s - p^2/W                                                    (B5)
 /// with the places W_s and the shared error c_s of the source. The y_s of faulty sensors is normal with the
-/// standard deviation 2 q beside its errors and the places, and tells nothing about D. Sensors are faulty with the probability 0.001 if the slip
-/// was measured twice, 0.07 if once, 0.5 if they were not verified (ours). Each combination of faulty sources is
+/// standard deviation 2 q beside its errors and the places, and tells nothing about D. Sensors are faulty with
+/// the probability 0.001 if the slip was measured twice, 0.07 if once, 0.5 if they were not verified (ours). Each
+/// combination of faulty sources is
 /// one hypothesis. Its probability is the product of the prior and of the densities of y_s, given those before;
 /// its D the mean by conjugate normal updates. The kMost most probable are kept.
 class ClassEvidence {
