@@ -142,6 +142,12 @@ struct Hypothesis {
   std::vector<bool> faulty{};
 };
 
+// Departure that a source read, weighted over its places.
+struct Heard {
+  Source source;
+  double mean, shared, variance;
+};
+
 }  // namespace
 
 void ClassEvidence::count(std::span<const SourcePull> pulls, double prior, double places, int sign) {
@@ -176,10 +182,6 @@ ClassState ClassEvidence::state(double step) const {
   const double p2 = ground_.pull_std * ground_.pull_std, q2 = ground_.mean_std * ground_.mean_std;
   const double of_places = places_ > 0 ? p2 / places() : 0.0;
   std::vector<Hypothesis> all{{0.0, 1.0 / (q2 + of_places), 0.0}};
-  struct Heard {
-    Source source;
-    double mean, shared, variance;
-  };
   std::vector<Heard> heard;
   for (const auto& [source, sums] : sources_) {
     const double weight = static_cast<double>(sums.weight) / kUnit;
