@@ -9,6 +9,7 @@ find_package(octomap 1.9 REQUIRED)
 find_package(GeographicLib REQUIRED)
 find_package(Boost 1.74 REQUIRED COMPONENTS filesystem system serialization)
 find_package(SQLite3 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
 # Only the header of xxHash is used, by checksum.cpp: installed targets do not depend on xxHash.
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 # OMPL 1.5.2 exports variables only.
@@ -20,7 +21,6 @@ target_link_libraries(talus::ompl INTERFACE ${OMPL_LIBRARIES} Boost::serializati
 if(TALUS_OFFLINE)
   find_package(GDAL 3.6 REQUIRED)
   find_package(yaml-cpp 0.7 REQUIRED)
-  find_package(nlohmann_json 3.11 REQUIRED)
   find_package(CLI11 2.1 REQUIRED)
   find_package(fmt 9 REQUIRED)
   find_package(spdlog 1.10 REQUIRED)

@@ -11,8 +11,7 @@
 
 namespace talus::costmap {
 
-/// All content of a map file that is not a raster, written as lines "name value". Numbers are written as the
-/// shortest text that reads back to the same bits.
+/// All content of a map file that is not a raster, written as CBOR (RFC 8949), which keeps the bits of numbers.
 struct MapText {
   maps::Grid grid;
   std::optional<maps::CoordinateSystem> coordinate_system;
@@ -25,11 +24,11 @@ struct MapText {
   std::vector<RefusedPlace> refused{};
 };
 
-/// Returns the content as text.
+/// Returns the content as bytes.
 std::string written(const MapText& text);
 
-/// Returns the content that the text of a map file contains. Throws InputError for a missing or unknown line,
-/// or an invalid number; the error names the file `name`.
-MapText parsed(const std::string& lines, const std::string& name);
+/// Returns the content from these bytes. Throws InputError for bytes that are none, a missing part or a value of
+/// another type; the error names the file `name`. A field that a part lacks has its default.
+MapText parsed(const std::string& bytes, const std::string& name);
 
 }  // namespace talus::costmap
