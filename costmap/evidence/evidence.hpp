@@ -83,8 +83,6 @@ struct WheelObservation {
   Estimate pull;  ///< estimated drawbar pull over load DP/W of the ground [-]
   /// Estimated sinkage over wheel radius z/r [-]; infinite standard deviation: not measured.
   Estimate sinkage;
-  double demand = 0.0;       ///< DP/W that the slope requires [-]
-  double from_torque = 0.0;  ///< DP/W from torque and sinkage [-]; NaN: not measured
   /// Standard deviation of `pull` due to errors common to all readings, for example of the slip; more readings
   /// do not reduce these errors; >= 0 [-]. NaN: unknown, and `pull` counts as unverified.
   double shared_std = 0.0;

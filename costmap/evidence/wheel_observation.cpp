@@ -198,8 +198,6 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
                        .place = reading.place,
                        .pull = {},
                        .sinkage = {},
-                       .demand = w.expected.drawbar_pull_over_load + balance.departure,
-                       .from_torque = w.from_torque,
                        .pose_std_m = reading.pose_std_m,
                        .bound = balance.standing && !known(reading.drawbar_pull_N)};
   const GroundBelief prior = model_.prior(w.read.class_index);

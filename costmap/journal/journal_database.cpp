@@ -255,8 +255,6 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .place = out.reading.place,
                      .pull = {number(row, 14), number(row, 15)},
                      .sinkage = {number(row, 16), number(row, 17)},
-                     .demand = out.reading.gradient,
-                     .from_torque = std::numeric_limits<double>::quiet_NaN(),
                      .shared_std = number(row, 24),
                      .share = number(row, 28),
                      .pose_std_m = out.reading.pose_std_m,

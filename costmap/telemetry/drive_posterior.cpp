@@ -14,8 +14,9 @@ constexpr int kParts = DriveEstimate::kParts;
 constexpr std::size_t kChunk = 16;      // moments of one chunk
 constexpr double kGradientStep = 0.01;  // width of a bin of gradients
 constexpr double kIntegralScale = 2.0 / 3.0;
-constexpr double kModelError = 0.01, kSlipNoise = 0.015, kGradientNoise = 0.01, kSecondNoise = 0.03;
-constexpr double kUnrelatedOffset = 0.3;
+constexpr double kModelError = 0.01, kSlipNoise = 0.015, kGradientNoise = 0.01, kSecondNoise = 0.03,
+                 kSecondOffset = 0.015;
+constexpr double kUnrelatedOffset = 0.3, kFaultOffset = 0.03;
 constexpr double kEvidence = 0.5;  // power of the likelihood: the curve of a class is never exact
 constexpr double kCoarseEvidence = 0.1;
 constexpr double kNegligible = 1e-4;    // probability of a hypothesis by the first grid that the second omits
@@ -32,6 +33,7 @@ constexpr std::array<double, 5> kResistances{-2.0, -1.0, 0.0, 1.0, 2.0};
 constexpr double kNodeStd = 0.4;
 constexpr double kNodesStd = 0.917;  // (1 - kNodeStd^2)^(1/2)
 constexpr double kReferenceSlip = 0.5;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr int kSlips = 146;
 constexpr double kLeastSlip = -0.5, kSlipStep = 0.01;
@@ -100,13 +102,6 @@ Curves curvesOf(const GroundModel& model, int class_index, int rutted, int wheel
   return curves;
 }
 
-// Sensor on ground whose shear modulus is `modulus` times that of the class: wheels slip by `modulus` times the slip
-// that the sensor is given, which is that of the curve of the class.
-struct Sensor {
-  SlipSensor sensor;
-  double modulus = 1.0;
-};
-
 // Hypothesis of the slip sensor: from part `from` on, `after` replaces `sensor`, with an offset of its own.
 struct Hypothesis {
   const char* kind;
@@ -125,7 +120,7 @@ double logPrior(double departure) {
 constexpr double kPriorVariance = 0.9 + 0.1 * 9.0;  // over that of mean_std
 
 struct Hypotheses {
-  std::vector<Sensor> sensors;
+  std::vector<SlipSensor> sensors;
   std::vector<Hypothesis> all;
 
   // Those with a probability above kNegligible.
@@ -149,45 +144,60 @@ struct Hypotheses {
   }
 };
 
-Hypotheses hypotheses(double modulus_std) {
+// With one slip, faults of the sensor are on ground with the shear modulus of the class, because the slip times a scale
+// and the shear modulus times it give one curve.
+Hypotheses hypotheses(double modulus_std, bool twice) {
   using Kind = SlipSensor::Kind;
-  constexpr double kSound = 0.015, kOffset = 0.1, kFaultOffset = 0.03;
+  constexpr double kSound = 0.015, kOffset = 0.1;
   constexpr int kModuli = 7, kScales = 16;
   constexpr double kModulusStep = 0.35, kScaleStep = 0.15;  // of the logarithm; the former over its deviation
   Hypotheses h;
-  const auto add = [&](const char* kind, double prior, const std::vector<SlipSensor>& of_kind,
-                       double offset_std) {
-    for (const SlipSensor& one : of_kind) {
-      const std::size_t at = h.sensors.size();
-      h.all.push_back({kind, prior / static_cast<double>(of_kind.size()), offset_std, at, at});
-      h.sensors.push_back({one});
+  const auto onModuli = [&](int step, const auto& add) {
+    for (int i = -kModuli; i <= kModuli; i += step) {
+      const double off = kModulusStep * i;
+      add(std::exp(off * modulus_std),
+          step * kModulusStep * std::exp(-0.5 * off * off) / std::sqrt(2.0 * std::numbers::pi));
     }
   };
-  add("unrelated", 0.02, {{Kind::Unrelated}}, kUnrelatedOffset);
-  add("of class", 0.005, {{Kind::OfClass}}, kFaultOffset);
+  const auto add = [&](const char* kind, double prior, double offset_std, SlipSensor sensor) {
+    const std::size_t at = h.sensors.size();
+    h.all.push_back({kind, prior, offset_std, at, at});
+    h.sensors.push_back(sensor);
+  };
+  const auto addEach = [&](const char* kind, double prior, const std::vector<SlipSensor>& of_kind,
+                           double offset_std = kFaultOffset) {
+    for (SlipSensor sensor : of_kind) {
+      const double each = prior / static_cast<double>(of_kind.size());
+      if (!twice) add(kind, each, offset_std, sensor);
+      if (twice)
+        onModuli(2, [&](double modulus, double part) {
+          sensor.modulus = modulus;
+          add(kind, each * part, offset_std, sensor);
+        });
+    }
+  };
+  addEach("unrelated", 0.02, {{Kind::Unrelated}}, kUnrelatedOffset);
+  addEach("of class", 0.005, {{Kind::OfClass}});
   std::vector<SlipSensor> knees, scales;
   for (const double knee : {0.1, 0.2, 0.3})
     for (const double scale : {0.0, 0.25, 0.5, 0.75}) knees.push_back({Kind::Knee, scale, knee});
   for (int i = 0; i < kScales; ++i) scales.push_back({Kind::Linear, 1.1 * std::exp(-kScaleStep * i)});
-  add("compressed", 0.03, knees, kFaultOffset);
-  add("scale", 0.05, scales, kFaultOffset);
-  add("uphill", 0.02, {{Kind::Uphill, 0.25}, {Kind::Uphill, 0.4}, {Kind::Uphill, 0.55}, {Kind::Uphill, 0.7}},
-      kFaultOffset);
-  add("by gradient", 0.02,
-      {{Kind::ByGradient, 0.5}, {Kind::ByGradient, 1.0}, {Kind::ByGradient, 1.5}, {Kind::ByGradient, 2.0}},
-      kFaultOffset);
-  for (int i = -kModuli; i <= kModuli; ++i) {
-    const double off = kModulusStep * i, modulus = std::exp(off * modulus_std);
-    const double part = kModulusStep * std::exp(-0.5 * off * off) / std::sqrt(2.0 * std::numbers::pi);
+  addEach("compressed", 0.03, knees);
+  addEach("scale", 0.05, scales);
+  addEach("uphill", 0.02,
+          {{Kind::Uphill, 0.25}, {Kind::Uphill, 0.4}, {Kind::Uphill, 0.55}, {Kind::Uphill, 0.7}});
+  addEach(
+      "by gradient", 0.02,
+      {{Kind::ByGradient, 0.5}, {Kind::ByGradient, 1.0}, {Kind::ByGradient, 1.5}, {Kind::ByGradient, 2.0}});
+  onModuli(1, [&](double modulus, double part) {
     const std::size_t sensor = h.sensors.size();
-    h.sensors.push_back({{Kind::Linear, modulus}, modulus});
-    h.all.push_back({"sound", 0.80 * part, kSound, sensor, sensor});
+    add("sound", 0.80 * part, kSound, {.modulus = modulus});
     h.all.push_back({"offset", 0.05 * part, kOffset, sensor, sensor});
     for (int from = 1; from < kParts; ++from) {
       h.all.push_back({"step", 0.02 / (kParts - 1) * part, kOffset, sensor, sensor, from});
       h.all.push_back({"stuck", 0.01 / (kParts - 1) * part, kOffset, sensor, 0, from});
     }
-  }
+  });
   return h;
 }
 
@@ -313,9 +323,8 @@ struct OfClass {
 
   // Residuals of the first parts for one sensor. Where the slip was measured twice: given the second slip.
   using Parts = std::array<Residuals, kParts + 1>;
-  Parts partsOf(const Sensor& of, const std::vector<Curve::Driven>& driven,
+  Parts partsOf(const SlipSensor& sensor, const std::vector<Curve::Driven>& driven,
                 const std::vector<double>& variances, std::size_t t, double evidence) const {
-    const auto& [sensor, modulus] = of;
     Parts until{};
     for (std::size_t k = 0; k < readings.size(); ++k) {
       const Reading& r = readings[k];
@@ -328,8 +337,8 @@ struct OfClass {
                             ? kUnrelatedErrors[t] * kUnrelatedErrors[t]
                             : kSlipNoise * kSlipNoise + gain * gain * of_ground;
       if (r.seconds > 0.0) {
-        const double known = of_ground / (of_ground + r.second_variance / (modulus * modulus));
-        residual -= gain * known * (r.second / modulus - slip);
+        const double known = of_ground / (of_ground + r.second_variance / (sensor.modulus * sensor.modulus));
+        residual -= gain * known * (r.second / sensor.modulus - slip);
         by_resistance *= 1.0 - known;
         variance -= gain * gain * known * of_ground;
       }
@@ -352,7 +361,7 @@ struct OfClass {
         all.add(weight / variance, r.second - modulus * driven[k].slip, modulus * driven[k].by_resistance,
                 weight * std::log(variance));
       }
-    return all.marginal(0.0);
+    return all.marginal(kSecondOffset);
   }
 
   // Adds one hypothesis with one departure, node of the resistance and variation.
@@ -391,7 +400,7 @@ struct OfClass {
           for (std::size_t k = 0; k < readings.size(); ++k) variances[k] = variance(driven[k], t);
           std::map<double, Quadratic> by_second;  // by modulus
           std::vector<Parts> until;
-          for (const Sensor& sensor : h.sensors) {
+          for (const SlipSensor& sensor : h.sensors) {
             if (!by_second.contains(sensor.modulus))
               by_second.emplace(sensor.modulus, bySecond(sensor.modulus, driven, variances, evidence));
             until.push_back(partsOf(sensor, driven, variances, t, evidence));
@@ -490,14 +499,14 @@ bool anyHypothesis(std::size_t) noexcept {
   return true;
 }
 
-// Sets the kind of sensor, and the most probable sensor whose slip depends on the ground; returns the number of
-// its hypothesis.
+// Sets the kind of sensor, and the most probable sensor where a slip depends on the ground; returns the number of its
+// hypothesis.
 std::size_t nameSensor(const Hypotheses& h, const std::vector<double>& weights, DriveEstimate& out) {
   std::map<std::string, double> kinds;
   std::size_t best = 0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     kinds[h.all[i].kind] += weights[i];
-    if (!h.sensors[h.all[i].sensor].sensor.informs()) continue;
+    if (!out.twice && !h.sensors[h.all[i].sensor].informs()) continue;
     out.informing += weights[i];
     if (weights[i] > weights[best]) best = i;
   }
@@ -507,17 +516,17 @@ std::size_t nameSensor(const Hypotheses& h, const std::vector<double>& weights, 
       out.hypothesis = kind;
     }
   out.uninforming = kinds["of class"] > kinds["unrelated"] ? "of class" : "unrelated";
-  out.sensor = h.sensors[h.all[best].sensor].sensor;
+  out.sensor = h.sensors[h.all[best].sensor];
   out.changed_from = h.all[best].from;
-  out.changed_informs = h.all[best].from == kParts || h.sensors[h.all[best].after].sensor.informs();
+  out.changed_informs = h.all[best].from == kParts || h.sensors[h.all[best].after].informs();
   return best;
 }
 
 // Strength of one class over the hypotheses.
 DriveEstimate::OfClass strengthBy(const Hypotheses& h, const std::vector<double>& weights,
-                                  const OfClass::Table& table, const OfClass& of) {
+                                  const OfClass::Table& table, const OfClass& of, bool twice) {
   const auto isSound = [&](std::size_t i) { return std::string_view(h.all[i].kind) == "sound"; };
-  const auto informs = [&](std::size_t i) { return h.sensors[h.all[i].sensor].sensor.informs(); };
+  const auto informs = [&](std::size_t i) { return twice || h.sensors[h.all[i].sensor].informs(); };
   const double rut2 = std::pow(of.inRut() * of.ground.rut_std, 2);
   const auto by = [&](const auto& counts) {
     const Estimate mean = departureBy(weights, table, counts);
@@ -535,15 +544,16 @@ DriveEstimate::OfClass strengthBy(const Hypotheses& h, const std::vector<double>
 }  // namespace
 
 double SlipSensor::read(double slip, double gradient, double of_class) const noexcept {
+  const double of_wheels = modulus * slip;
   switch (kind) {
     case Kind::Linear:
-      return scale * slip;
+      return scale * of_wheels;
     case Kind::Knee:
-      return std::min(slip, knee) + scale * std::max(slip - knee, 0.0);
+      return std::min(of_wheels, knee) + scale * std::max(of_wheels - knee, 0.0);
     case Kind::Uphill:
-      return gradient > 0.0 ? scale * slip : slip;
+      return gradient > 0.0 ? scale * of_wheels : of_wheels;
     case Kind::ByGradient:
-      return slip - scale * std::max(gradient, 0.0);
+      return of_wheels - scale * std::max(gradient, 0.0);
     case Kind::OfClass:
       return of_class;
     case Kind::Unrelated:
@@ -554,23 +564,33 @@ double SlipSensor::read(double slip, double gradient, double of_class) const noe
 
 double SlipSensor::gain(double slip, double gradient) const noexcept {
   if (!informs()) return 0.0;
-  return (kind == Kind::Knee && slip > knee) || kind == Kind::Linear ||
+  return (kind == Kind::Knee && modulus * slip > knee) || kind == Kind::Linear ||
                  (kind == Kind::Uphill && gradient > 0.0)
-             ? scale
-             : 1.0;
+             ? scale * modulus
+             : modulus;
 }
 
 double SlipSensor::slipOf(double read, double gradient) const noexcept {
   switch (kind) {
     case Kind::Knee:
-      return read <= knee ? read : knee + (read - knee) / std::max(scale, 0.1);
+      return (read <= knee ? read : knee + (read - knee) / std::max(scale, 0.1)) / modulus;
     case Kind::Uphill:
-      return gradient > 0.0 ? read / scale : read;
+      return (gradient > 0.0 ? read / scale : read) / modulus;
     case Kind::ByGradient:
-      return read + scale * std::max(gradient, 0.0);
+      return (read + scale * std::max(gradient, 0.0)) / modulus;
     default:
-      return read / scale;
+      return read / (scale * modulus);
   }
+}
+
+std::pair<double, double> DriveEstimate::slip(std::size_t moment, std::pair<double, double> read,
+                                              double gradient) const noexcept {
+  const bool before = partOf(moment) < changed_from;
+  if (displaced(moment) || !(informing > kLeastInforming)) return {kNone, kNone};
+  if (!sensor.informs() || !(before || changed_informs))
+    return {read.second / sensor.modulus, sensor.modulus};
+  const double slip = sensor.slipOf(read.first - (before ? offset : changed_offset), gradient);
+  return {slip, sensor.gain(slip, gradient)};
 }
 
 int DriveEstimate::partOf(std::size_t moment) const noexcept {
@@ -673,7 +693,7 @@ DriveEstimate DrivePosterior::fitted() const {
       modulus_std = std::max(modulus_std, driven.back().ground.modulus_std);
     }
   if (driven.empty()) return out;
-  Hypotheses h = hypotheses(modulus_std);
+  Hypotheses h = hypotheses(modulus_std, out.twice);
   std::vector<OfClass::Table> tables;
   std::vector<double> weights;
   // The second grid lies around the posterior by the first.
@@ -697,7 +717,7 @@ DriveEstimate DrivePosterior::fitted() const {
   std::vector<GroundClass> found = model_.parts().classes;
   for (std::size_t k = 0; k < driven.size(); ++k) {
     DriveEstimate::OfClass& of = out.classes[static_cast<std::size_t>(driven[k].index)];
-    of = strengthBy(h, weights, tables[k], driven[k]);
+    of = strengthBy(h, weights, tables[k], driven[k], out.twice);
     const OfClass::Sums& sums = tables[k][best];
     of.at = sums.at / sums.weight;
     found[static_cast<std::size_t>(driven[k].index)] =

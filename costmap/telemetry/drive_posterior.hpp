@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <talus/costmap/ground/ground_model.hpp>
@@ -13,16 +14,17 @@
 
 namespace talus::costmap {
 
-/// Slip sensor: what it reads, without its offset, at a true slip.
+/// Slip sensor, and the shear modulus of its ground: what the sensor reads, without its offset, where the curve of the
+/// class has a slip. Wheels slip by `modulus`, the shear modulus over that of the class, times this slip.
 struct SlipSensor {
-  /// Linear: scale * slip. Knee: the part of slips beyond `knee` times `scale`. Uphill: times `scale` on climbs.
-  /// ByGradient: less `scale` times the gradient of a climb. OfClass: the slip of the class on the gradient.
+  /// Linear: scale * slip of the wheels. Knee: the part of slips beyond `knee` times `scale`. Uphill: times `scale` on
+  /// climbs. ByGradient: less `scale` times the gradient of a climb. OfClass: the slip of the class on the gradient.
   /// Unrelated: a constant, whatever the ground does.
   enum class Kind : std::uint8_t { Linear, Knee, Uphill, ByGradient, OfClass, Unrelated };
   Kind kind = Kind::Linear;
-  double scale = 1.0, knee = 0.0;
+  double scale = 1.0, knee = 0.0, modulus = 1.0;
 
-  /// Returns the reading at a slip on a gradient; `of_class` is the slip of the class there.
+  /// Returns the reading at a slip of the curve on a gradient; `of_class` is the slip of the class there.
   double read(double slip, double gradient, double of_class) const noexcept;
   /// Returns the slip at which a gradient gives a reading; meaningless for OfClass and Unrelated.
   double slipOf(double read, double gradient) const noexcept;
@@ -59,7 +61,7 @@ struct DriveEstimate {
   /// Most probable kind of sensor, and most probable kind whose slip does not depend on the ground, as text.
   std::string hypothesis, uninforming;
   double probability = 0.0;   ///< probability of this kind [-]
-  double informing = 0.0;     ///< probability that the slip depends on the ground [-]
+  double informing = 0.0;     ///< probability that a slip depends on the ground [-]
   bool twice = false;         ///< true if a second, independent slip was measured
   double slope_offset = 0.0;  ///< measured gradient = slope_offset + slope_scale * gradient of the map
   double slope_scale = 1.0;
@@ -69,15 +71,10 @@ struct DriveEstimate {
   /// Returns the part, 0 to kParts - 1, of the moment with a number.
   int partOf(std::size_t moment) const noexcept;
   bool displaced(std::size_t moment) const noexcept { return partOf(moment) >= displaced_from; }
-  /// Returns true if the slip of the moment with a number may depend on the ground at its pose.
-  bool informs(std::size_t moment) const noexcept {
-    return informing > kLeastInforming && (changed_informs || partOf(moment) < changed_from) &&
-           !displaced(moment);
-  }
-  /// Returns the slip for a reading of the moment with a number on a gradient.
-  double slip(std::size_t moment, double read, double gradient) const noexcept {
-    return sensor.slipOf(read - (partOf(moment) < changed_from ? offset : changed_offset), gradient);
-  }
+  /// Returns the slip of the curve by the readings of both slips (NaN: none) of the moment with a number, and the change
+  /// of the reading that was used for a change of this slip; NaN if they tell nothing about the ground at its pose.
+  std::pair<double, double> slip(std::size_t moment, std::pair<double, double> read,
+                                 double gradient) const noexcept;
   /// Returns the gradient of the ground for a measured gradient.
   double gradient(double measured) const noexcept { return (measured - slope_offset) / slope_scale; }
 };
@@ -89,7 +86,7 @@ struct DriveEstimate {
 /// 0.5 has, on a slope of gradient g, the slip m i, m the shear modulus over that of the class, with
 ///   P_R(i) + (D - P_R(0.5) + P_0(0.5)) h_R(i) = g                                                       (B2)
 /// P and H are means over the wheels of the rover, of which some run in ruts. A sensor (SlipSensor) with offset b
-/// reads b + read(m i) + a u + e1, a second slip m i + u + e2, where a is the change of the reading for a change of
+/// reads b + read(m i) + a u + e1, a second slip b2 + m i + u + e2, where a is the change of the reading for a change of
 /// the slip, and
 ///   var u = ((t^2 p^2 + 0.01^2) h^2 + 0.01^2) (di/dg)^2, var e1 = 0.015^2, var e2 = 0.03^2 + scatter^2   (B3)
 /// p is the standard deviation of the class between places, t its share in this drive, u the departure of a place,

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -18,7 +17,6 @@ constexpr double kTwoStd = 0.05;   // two standard deviations of drawbar pull ov
 constexpr double kSunk = 0.75;     // sinkage over radius from which ground is dangerous in every heading
 constexpr double kBelow = 0.01;    // step in which evidence is stored, in DP/W
 constexpr double kMost = 10.0;     // greatest value of either bound; greater values have no further effect
-constexpr double kFarBelow = 2.0;  // standard deviations
 
 // Returns the greater of the measured slip and the slip from speeds, at most 1; NaN if both are missing.
 double slipOf(const TelemetryReading& reading) noexcept {
@@ -29,38 +27,6 @@ double slipOf(const TelemetryReading& reading) noexcept {
 // Limits a bound to the range of the journal; NaN stays.
 double kept(double most_pull) noexcept {
   return std::isnan(most_pull) ? most_pull : std::clamp(most_pull, -kMost, kMost);
-}
-
-constexpr std::size_t kWindow = 5;
-constexpr const char* kSpike = "spike";
-
-constexpr std::array<std::pair<const char*, double TelemetryReading::*>, 3> kSensors{
-    {{"slip", &TelemetryReading::slip},
-     {"torque", &TelemetryReading::torque_Nm},
-     {"sinkage", &TelemetryReading::sinkage_m}}};
-
-double medianOf(const std::deque<TelemetryReading>& last, double TelemetryReading::*field) {
-  std::vector<double> values;
-  for (const TelemetryReading& r : last)
-    if (std::isfinite(r.*field)) values.push_back(r.*field);
-  if (values.size() < kWindow) return std::nan("");
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-bool departs(double value, double median, double limit) {
-  return std::abs(value - median) > limit;
-}
-
-bool sameNumber(double a, double b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
-}
-
-// True if two readings have equal slip, torque and sinkage.
-bool sameReading(const TelemetryReading& a, const TelemetryReading& b) {
-  return sameNumber(a.slip, b.slip) && sameNumber(a.torque_Nm, b.torque_Nm) &&
-         sameNumber(a.sinkage_m, b.sinkage_m);
 }
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -77,11 +43,6 @@ std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading&
   const auto cell = map.grid().cellAt(reading.place);
   const int index = cell ? map.surface().classIndex(*cell) : -1;
   return index < 0 ? std::nullopt : std::optional(index);
-}
-
-ClassReading withoutTorque(ClassReading read) {
-  read.reading.torque_Nm = read.reading.sinkage_m = kNone;
-  return read;
 }
 
 WheelObservation boundOf(const TelemetryReading& reading, const GroundBound& here) {
@@ -105,14 +66,13 @@ std::string sensorText(const DriveEstimate& drive) {
       {"sound", "sound slip sensor"},
       {"offset", "slip has an offset, which is corrected"},
       {"step", "slip steps on the way, which is corrected"},
-      {"stuck",
-       "slip no longer depends on the ground from some place on; the rows from there on tell nothing"},
+      {"stuck", "slip no longer depends on the ground from some place on"},
       {"scale", "slip is read too small or too large in proportion"},
       {"compressed", "large slips are read too small"},
       {"uphill", "slip is read too small on climbs"},
       {"by gradient", "slip is read too small in proportion to the slope"},
-      {"of class", "slip is computed from the soil of the class instead of measured; the rows tell nothing"},
-      {"unrelated", "slip does not depend on the slope; the rows tell little"}};
+      {"of class", "slip is computed from the soil of the class instead of measured"},
+      {"unrelated", "slip does not depend on the slope"}};
   if (drive.displaced_from < DriveEstimate::kParts)
     return "measured slopes do not follow those of the map from part " +
            std::to_string(drive.displaced_from + 1) + " of " + std::to_string(DriveEstimate::kParts) +
@@ -123,8 +83,10 @@ std::string sensorText(const DriveEstimate& drive) {
   char probability[16];
   std::snprintf(probability, sizeof probability, "%.2f",
                 verified ? drive.probability : 1.0 - drive.informing);
-  return std::string(texts.at(verified ? drive.hypothesis : drive.uninforming)) + " (probability " +
-         probability + ")" + (drive.twice || (verified && drive.hypothesis == "sound") ? "" : kSettles);
+  const std::string& kind = verified ? drive.hypothesis : drive.uninforming;
+  const bool tells = verified && kind != "stuck";
+  return std::string(texts.at(kind)) + (drive.twice || tells ? "" : "; such rows tell nothing") +
+         " (probability " + probability + ")" + (drive.twice || kind == "sound" ? "" : kSettles);
 }
 
 }  // namespace
@@ -157,129 +119,21 @@ GroundBound DangerWatch::bound(int class_index, const TelemetryReading& reading,
   return bound;
 }
 
-GroundBound DangerWatch::bound(int class_index, const WheelObservation& suspected) const {
-  GroundBound bound;
-  const double class_std = model_.parts().classes[static_cast<std::size_t>(class_index)].pull_std;
-  const double below = model_.prior(class_index).pull.value - suspected.pull.value;
-  if (below > kFarBelow * std::hypot(suspected.pull.std, class_std)) bound.lower(kept(suspected.pull.value));
-  return bound;
-}
-
-bool SensorWatch::isSpike(const Wheel& wheel, const TelemetryReading& reading) const {
-  const double radius_m = model_.rover().wheel.radius_m;
-  return departs(reading.slip, medianOf(wheel.last, &TelemetryReading::slip), limits_.slip_spike) ||
-         departs(reading.torque_Nm, medianOf(wheel.last, &TelemetryReading::torque_Nm),
-                 limits_.torque_spike * radius_m * reading.load_N) ||
-         departs(reading.sinkage_m, medianOf(wheel.last, &TelemetryReading::sinkage_m),
-                 limits_.sinkage_spike * radius_m);
-}
-
-bool SensorWatch::slipsBackwardsUphill(const TelemetryReading& reading) const noexcept {
-  return reading.slip < limits_.backward_slip && reading.gradient > limits_.climb &&
-         !(reading.torque_Nm <= 0.0);
-}
-
-// Returns a reason if the whole reading is stuck, or one sensor that changed in most rows before. Must be
-// called before the reading is stored.
-std::optional<std::string> SensorWatch::stuck(Wheel& wheel, const TelemetryReading& reading) const {
-  if (wheel.last.empty()) return std::nullopt;
-  const TelemetryReading& before = wheel.last.back();
-  wheel.equal = sameReading(before, reading) ? wheel.equal + 1 : 0;
-  std::optional<std::string> reason;
-  for (std::size_t i = 0; i < kSensors.size(); ++i) {
-    const auto& [name, field] = kSensors[i];
-    Channel& channel = wheel.channels[i];
-    if (!std::isfinite(reading.*field) || !std::isfinite(before.*field)) continue;
-    channel.equal = reading.*field == before.*field ? channel.equal + 1 : 0;
-    const bool lively =
-        channel.rows >= limits_.stuck_rows &&
-        static_cast<double>(channel.changes) > limits_.lively * static_cast<double>(channel.rows);
-    if (channel.equal == 0) ++channel.changes;
-    if (channel.equal == 0 || !lively) ++channel.rows;
-    if (lively && channel.equal + 1 >= limits_.stuck_rows) reason = std::string(name) + " is stuck";
-  }
-  return wheel.equal + 1 >= limits_.stuck_rows ? "readings are stuck" : reason;
-}
-
-std::vector<std::optional<std::string>> SensorWatch::refuse(const std::vector<Named>& moment) {
-  std::vector<std::optional<std::string>> reasons;
-  for (const Named& named : moment) reasons.push_back(judge(named));
-  // If all wheels are rejected and several jump, the jumps are accepted as slip of the rover.
-  const auto spikes = std::count(reasons.begin(), reasons.end(), kSpike);
-  const bool all_jump = spikes > 1 && std::all_of(reasons.begin(), reasons.end(),
-                                                  [](const auto& reason) { return reason.has_value(); });
-  for (auto& reason : reasons)
-    if (all_jump && reason == kSpike)
-      reason.reset();
-    else if (reason)
-      ++refusals_[*reason];
-  return reasons;
-}
-
-std::optional<std::string> SensorWatch::judge(const Named& named) {
-  const TelemetryReading& reading = named.reading;
-  Wheel& wheel = wheels_[named.wheel];
-  std::optional<std::string> reason;
-  if (reading.time_s < wheel.time_s) {
-    wheel = Wheel{};
-    ++clock_went_back_;
-  }
-  if (!std::isnan(reading.time_s)) wheel.time_s = reading.time_s;
-  if (const auto still = stuck(wheel, reading); !reason) reason = still;
-  if (!reason && isSpike(wheel, reading)) reason = kSpike;
-  if (!reason && slipsBackwardsUphill(reading)) reason = "negative slip on a climb: the slip is biased";
-  wheel.last.push_back(reading);
-  if (wheel.last.size() > kWindow) wheel.last.pop_front();
-  return reason;
-}
-
-void SensorWatch::compare(const WheelObservation& observation) {
-  if (!std::isfinite(observation.from_torque) || !std::isfinite(observation.demand)) return;
-  difference_sum_ += observation.from_torque - observation.demand;
-  ++differences_;
-}
-
-std::optional<double> SensorWatch::bias() const {
-  if (differences_ < limits_.bias_rows) return std::nullopt;
-  return difference_sum_ / static_cast<double>(differences_);
-}
-
-std::vector<std::string> SensorWatch::findings() const {
-  std::vector<std::string> lines;
-  for (const auto& [reason, count] : refusals_) lines.push_back(std::to_string(count) + " rows: " + reason);
-  if (clock_went_back_ > 0)
-    lines.push_back(
-        std::to_string(clock_went_back_) +
-        " rows: time decreases; each begins a series of its own, and the drive raises no estimate");
-  if (biased())
-    lines.push_back(
-        "torque and sinkage imply " + std::to_string(*bias()) +
-        " DP/W more than the slope requires: a torque offset of " +
-        std::to_string(*bias() * model_.rover().wheel.radius_m * terramech::wheelLoad_N(model_.rover())) +
-        " Nm, or a wrong sinkage datum; both channels are excluded");
-  return lines;
-}
-
 WheelObservation boundAlone(const WheelObservation& observation) {
   WheelObservation left = observation;
   left.pull = left.sinkage = {kNone, kNone};
-  left.from_torque = kNone;
   left.bound = left.sinkage_verified = false;
   left.trust = Trust::Unverified;
   return left;
 }
 
 TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
-    : map_(map), danger_(map.model()), watch_(map.model()), posterior_(map.model()), observer_(map.model()) {}
+    : map_(map), danger_(map.model()), posterior_(map.model()), observer_(map.model()) {}
 
 std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const TelemetryRows& rows,
                                                                     const Moment& moment,
                                                                     const DriveVerdict& verdict) {
   transferred_ += moment.transferred ? moment.readings.size() : 0;
-  std::vector<SensorWatch::Named> named;
-  for (std::size_t w = 0; w < moment.readings.size(); ++w)
-    named.push_back({rows.series(moment.rows[w]), moment.readings[w]});
-  const auto suspected = watch_.refuse(named);
   std::vector<Result> all;
   std::vector<std::size_t> sound_at;
   Sound sound;
@@ -292,18 +146,15 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
       continue;
     }
     const ClassReading read{*index, result.reading};
-    const GroundBound here = bound(read, rows.leastGradient(moment.rows[w]), suspected[w].has_value());
+    const GroundBound here = danger_.bound(*index, result.reading, rows.leastGradient(moment.rows[w]));
     if (here.any()) result.observation = boundOf(result.reading, here);
-    if (suspected[w]) {
-      result.reason = *suspected[w];
-      continue;
-    }
     sound.read.push_back(read);
     sound.row.push_back(moment.rows[w]);
     sound.danger.push_back(here.any());
+    sound.second.push_back(rows.secondSlip(moment.rows[w]));
     sound_at.push_back(w);
   }
-  auto seen = observed(sound, verdict);
+  auto seen = observer_.observe(sound.read);
   const std::size_t number = posterior_.moments();
   take(rows, sound);
   if (verdict.follows && !verdict.drive) follow();
@@ -314,7 +165,7 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
   if (!of_rover)
     others_ += moment.readings.size();
   else if (fitted_)
-    correct(sound, number, verdict, seen);
+    correct(sound, number, seen);
   for (auto& one : seen)
     if (one && one->trust == Trust::Unverified && one->share < kMobilised) one->pull.std = kNoStrength;
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -345,29 +196,6 @@ std::optional<WheelObservation> TelemetryProcessor::ofUnobserved(const Telemetry
   return here.any() ? std::optional(boundOf(reading, here)) : std::nullopt;
 }
 
-// Returns the bound from one reading; for a suspected reading, the estimated pull is used, too.
-GroundBound TelemetryProcessor::bound(const ClassReading& read, double least_gradient, bool suspected) const {
-  GroundBound here = danger_.bound(read.class_index, read.reading, least_gradient);
-  if (!suspected) return here;
-  auto seen = observer_.observe({read}).front();
-  if (!seen) return here;
-  here.lower(danger_.bound(read.class_index, *seen).most_pull);
-  return here;
-}
-
-// Returns the joint observations of the accepted wheels; biased torque and sinkage are omitted. Readings that
-// indicate danger are not used to check sensors.
-std::vector<std::optional<WheelObservation>> TelemetryProcessor::observed(const Sound& sound,
-                                                                          const DriveVerdict& verdict) {
-  auto whole = observer_.observe(sound.read);
-  for (std::size_t i = 0; i < whole.size(); ++i)
-    if (whole[i] && !sound.danger[i]) watch_.compare(*whole[i]);
-  if (!verdict.without_torque) return whole;
-  std::vector<ClassReading> without;
-  for (const ClassReading& read : sound.read) without.push_back(withoutTorque(read));
-  return observer_.observe(without);
-}
-
 // Adds a moment to the posterior if all wheels are on one class, travel straight ahead and indicate no danger.
 void TelemetryProcessor::take(const TelemetryRows& rows, const Sound& sound) {
   if (sound.read.empty() || std::find(sound.danger.begin(), sound.danger.end(), true) != sound.danger.end())
@@ -376,9 +204,8 @@ void TelemetryProcessor::take(const TelemetryRows& rows, const Sound& sound) {
   DrivePosterior::Moment moment{.class_index = sound.read.front().class_index,
                                 .wheels = static_cast<int>(sound.read.size()),
                                 .place = sound.read.front().reading.place,
-                                .gradient = rows.measuredGradient(first),
-                                .map_gradient = rows.mapGradient(first)};
-  std::vector<double> slips, second;
+                                .gradient = rows.measuredGradient(first)};
+  std::vector<double> slips;
   for (const ClassReading& read : sound.read) {
     // On a test stand, and on a rover that crabs, the pull is not that of the slope.
     if (read.class_index != moment.class_index || std::abs(read.reading.slip_angle_rad) > kCrabbing ||
@@ -387,9 +214,10 @@ void TelemetryProcessor::take(const TelemetryRows& rows, const Sound& sound) {
     moment.rutted += read.reading.pass > 1 ? 1 : 0;
     slips.push_back(read.reading.slip);
   }
-  for (const std::size_t row : sound.row) second.push_back(rows.secondSlip(row));
+  for (const std::size_t row : sound.row)
+    moment.map_gradient += rows.mapGradient(row) / static_cast<double>(sound.row.size());
   moment.slip = median(std::move(slips));
-  moment.second_slip = median(std::move(second));
+  moment.second_slip = median(sound.second);
   moment.second_std = rows.secondStd();
   posterior_.take(moment);
 }
@@ -403,7 +231,7 @@ void TelemetryProcessor::follow() {
 
 std::vector<std::string> TelemetryProcessor::findings() const {
   constexpr double kLeastChange = 0.05;  // least departure from a class that is reported
-  std::vector<std::string> lines = watch_.findings();
+  std::vector<std::string> lines;
   if (!fitted_) return lines;
   if (!sensors_.empty() && !sensors_.starts_with("sound")) lines.push_back(sensors_);
   for (std::size_t c = 0; c < fitted_->classes.size(); ++c) {
@@ -426,48 +254,43 @@ std::vector<std::string> TelemetryProcessor::findings() const {
 }
 
 DriveVerdict TelemetryProcessor::verdict() const {
-  DriveVerdict verdict = soFar();
-  verdict.drive = std::make_shared<DriveEstimate>(posterior_.fitted());
-  verdict.follows = false;
-  return verdict;
+  return {.drive = std::make_shared<DriveEstimate>(posterior_.fitted())};
 }
 
 // Replaces the observations of the moment with a number by those from the corrected median slip and gradient,
-// relative to the mean strength of the drive; by bounds alone where the slip tells nothing about the ground.
-void TelemetryProcessor::correct(const Sound& sound, std::size_t number, const DriveVerdict& verdict,
+// relative to the mean strength of the drive; by bounds alone where no slip tells about the ground.
+void TelemetryProcessor::correct(const Sound& sound, std::size_t number,
                                  std::vector<std::optional<WheelObservation>>& seen) const {
   const DriveEstimate& drive = *fitted_;
+  if (!drive.ground) return;
   std::vector<ClassReading> read = sound.read;
   std::vector<double> slips, departures;
   for (const ClassReading& one : read) slips.push_back(one.reading.slip);
-  const double slip = median(std::move(slips));
-  if (!drive.ground) return;
+  const double slip = median(std::move(slips)), second = median(sound.second);
   for (std::size_t c = 0; c < drive.classes.size(); ++c) {
     const auto index = static_cast<int>(c);
     departures.push_back(drive.classes[c].at + map_.model().prior(index).pull.value -
                          drive.ground->prior(index).pull.value);
   }
+  std::vector<double> gains;
   for (ClassReading& one : read) {
-    if (verdict.without_torque) one = withoutTorque(one);
     one.reading.gradient = drive.gradient(one.reading.gradient);
-    one.reading.slip = std::clamp(drive.slip(number, slip, one.reading.gradient), -1.0, 1.0);
+    const auto [corrected, gain] = drive.slip(number, {slip, second}, one.reading.gradient);
+    one.reading.slip = std::clamp(corrected, -1.0, 1.0);
+    gains.push_back(std::clamp(gain, 0.1, 1.0));
   }
   const auto corrected = WheelObserver(*drive.ground).observe(read, departures);
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (!seen[i] || !corrected[i]) continue;
     const auto index = static_cast<std::size_t>(read[i].class_index);
     const DriveEstimate::OfClass& of = drive.classes[index];
+    if (!seen[i] || !std::isfinite(of.shared_std)) continue;  // no moment of the class was fitted
+    if (std::isnan(read[i].reading.slip)) seen[i]->pull.std = kNoStrength;
+    if (!corrected[i]) continue;
     const double largest = kLargestStdShare * map_.model().parts().classes[index].mean_std;
     const bool verified = drive.informing > DriveEstimate::kVerified && of.shared_std <= largest;
-    if (!std::isfinite(of.shared_std)) continue;  // no moment of the class was fitted
-    if (!drive.informs(number)) {
-      seen[i]->pull.std = kNoStrength;
-      continue;
-    }
     seen[i] = corrected[i];
     seen[i]->pull.value += (verified ? of.read : of.departure.value) - of.at;
-    seen[i]->pull.std /=
-        std::clamp(drive.sensor.gain(read[i].reading.slip, read[i].reading.gradient), 0.1, 1.0);
+    seen[i]->pull.std /= gains[i];
     seen[i]->shared_std = of.shared_std;
     if (verified) seen[i]->trust = drive.twice ? Trust::Twice : Trust::Once;
     seen[i]->sinkage_verified = verified;

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -46,10 +44,6 @@ class DangerWatch {
   /// gradient along the heading, rise over run [-].
   GroundBound bound(int class_index, const TelemetryReading& reading, double least_gradient) const;
 
-  /// Returns the bound from a suspected reading: its DP/W, if this lies below that of the class by more than
-  /// two standard deviations.
-  GroundBound bound(int class_index, const WheelObservation& suspected) const;
-
  private:
   double dangerousBelow(double gradient) const noexcept;
   double dangerousInEveryHeading() const noexcept;
@@ -57,90 +51,8 @@ class DangerWatch {
   const GroundModel& model_;
 };
 
-/// Limits of SensorWatch beyond which readings are rejected or reported.
-struct SensorLimits {
-  double slip_spike = 0.3;  ///< difference of the slip from the median of the last five readings [-]
-  /// Difference of the torque T/(W r) from the median of the last five readings [-].
-  double torque_spike = 0.3;
-  /// Difference of the sinkage z/r from the median of the last five readings [-].
-  double sinkage_spike = 0.25;
-  std::size_t stuck_rows = 25;  ///< number of consecutive equal readings from which a sensor counts as stuck
-  /// Share of rows with a changed value above which later equal values of a sensor count as stuck [-].
-  double lively = 0.8;
-  /// Least magnitude of the mean difference that counts as a bias: pull from torque and sinkage minus
-  /// required pull, over load [-].
-  double bias = 0.04;
-  std::size_t bias_rows = 30;    ///< least number of rows for the detection of a bias
-  double climb = 0.03;           ///< gradient above which a driven wheel cannot slip backwards [-]
-  double backward_slip = -0.03;  ///< slip below which a wheel slips backwards [-]
-};
-
-/// Checks the readings of a drive, wheel by wheel, in their order. Rejects, with a reason: stuck values (of
-/// all sensors of a wheel, or of one sensor that changed before), spikes, and negative slip of a driven wheel
-/// on a climb. A decrease of time is counted and begins a new series. An offset of torque or sinkage appears
-/// as pull that the slope does not require, on all ground; both channels are then excluded, so that only slip
-/// and slope remain.
-class SensorWatch {
- public:
-  SensorWatch(const GroundModel& model, const SensorLimits& limits = {}) : model_(model), limits_(limits) {}
-
-  /// Reading of a wheel, with the name of the wheel.
-  struct Named {
-    std::string wheel;
-    TelemetryReading reading;
-  };
-
-  /// Returns for each reading of one moment the reason why it is rejected; nullopt for an accepted reading.
-  /// If all wheels (two or more) jump at once, this is slip of the rover and not a spike.
-  std::vector<std::optional<std::string>> refuse(const std::vector<Named>& moment);
-  /// Returns the reason why the reading of one wheel is rejected; nullopt if it is accepted.
-  std::optional<std::string> refuse(const std::string& wheel, const TelemetryReading& reading) {
-    return refuse({{wheel, reading}}).front();
-  }
-
-  /// Adds to the statistics of bias() the pull from torque and sinkage minus the required pull of an
-  /// observation.
-  void compare(const WheelObservation& observation);
-  /// Returns the mean of the pull from torque and sinkage minus the required pull, over load [-]; nullopt
-  /// before SensorLimits::bias_rows rows.
-  std::optional<double> bias() const;
-  /// Returns true if |bias()| exceeds SensorLimits::bias.
-  bool biased() const { return bias() && std::abs(*bias()) > limits_.bias; }
-
-  /// Returns the results of the checks, one line each.
-  std::vector<std::string> findings() const;
-
- private:
-  // One sensor of a wheel: number of rows, number of changes of the value, and length of the present run of
-  // equal values.
-  struct Channel {
-    std::size_t rows = 0, changes = 0, equal = 0;
-  };
-  struct Wheel {
-    double time_s = -1e300;
-    std::deque<TelemetryReading> last;
-    std::size_t equal = 0;
-    std::array<Channel, 3> channels{};
-  };
-
-  std::optional<std::string> judge(const Named& named);
-  bool isSpike(const Wheel& wheel, const TelemetryReading& reading) const;
-  bool slipsBackwardsUphill(const TelemetryReading& reading) const noexcept;
-  std::optional<std::string> stuck(Wheel& wheel, const TelemetryReading& reading) const;
-
-  const GroundModel& model_;
-  SensorLimits limits_;
-  std::map<std::string, Wheel> wheels_;
-  std::map<std::string, std::size_t> refusals_;
-  std::size_t clock_went_back_ = 0;
-  double difference_sum_ = 0.0;
-  std::size_t differences_ = 0;
-};
-
 /// What is known about the sensors of a drive, from its rows so far or from a first pass over all rows.
 struct DriveVerdict {
-  /// True if torque and sinkage are biased, so that they are used for the detection of danger only.
-  bool without_torque = false;
   /// Estimate of the sensors and of the ground; null: the processor uses its own estimate from the rows so
   /// far.
   std::shared_ptr<const DriveEstimate> drive{};
@@ -151,11 +63,11 @@ struct DriveVerdict {
 WheelObservation boundAlone(const WheelObservation& observation);
 
 /// Processes the moments of a drive in order. A moment is the rows of all wheels at one time. For each
-/// moment, the sensors are checked, observations are computed, and the posterior of the drive is updated.
+/// moment, observations are computed and the posterior of the drive is updated.
 /// Keeps a reference to the map.
 ///
 /// Each channel of each reading is first checked for danger separately (DangerWatch). A dangerous reading
-/// bounds the ground at its place, even if the reading is rejected. A suspected reading has no other effect.
+/// bounds the ground at its place, even if the reading is rejected.
 ///
 /// Slips and gradients are corrected by DrivePosterior before observations are computed. Where the slip does
 /// not depend on the ground, or the pose is displaced, a moment contains bounds alone. Before the first
@@ -183,11 +95,11 @@ class TelemetryProcessor {
   /// Return what all rows so far tell. soFar() omits the estimate of the drive, so that each row uses the
   /// estimate at that row.
   DriveVerdict verdict() const;
-  DriveVerdict soFar() const { return {.without_torque = watch_.biased(), .follows = true}; }
+  static DriveVerdict soFar() { return {.follows = true}; }
   /// Returns what the sensors of the drive were found to be, as text, and the remedy of a fault; empty before the
   /// first estimate.
   const std::string& sensors() const noexcept { return sensors_; }
-  /// Returns what the checks and the estimate of the drive found, one line each: faults of sensors, and ground that
+  /// Returns what the estimate of the drive found, one line each: faults of sensors, and ground that
   /// departs from its class by more than 0.05 in DP/W.
   std::vector<std::string> findings() const;
   /// Returns the number of rows whose wheel loads were computed from the load transfer on the slope.
@@ -201,19 +113,17 @@ class TelemetryProcessor {
     std::vector<ClassReading> read;
     std::vector<std::size_t> row;
     std::vector<bool> danger;
+    std::vector<double> second;  // second slips
   };
 
   std::optional<WheelObservation> ofUnobserved(const TelemetryReading& reading, double least_gradient) const;
-  GroundBound bound(const ClassReading& read, double least_gradient, bool suspected) const;
-  std::vector<std::optional<WheelObservation>> observed(const Sound& sound, const DriveVerdict& verdict);
   void take(const TelemetryRows& rows, const Sound& sound);
   void follow();
-  void correct(const Sound& sound, std::size_t number, const DriveVerdict& verdict,
+  void correct(const Sound& sound, std::size_t number,
                std::vector<std::optional<WheelObservation>>& seen) const;
 
   const TraversabilityMap& map_;
   DangerWatch danger_;
-  SensorWatch watch_;
   DrivePosterior posterior_;
   std::shared_ptr<const DriveEstimate> fitted_;  // estimate from some of the moments so far
   std::string sensors_{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -25,6 +26,38 @@ inline std::shared_ptr<const GroundModel> groundOf(const terramech::Soil& first,
       .rover = rover,
       .classes = {GroundClass{.number = 1, .soil = first}, GroundClass{.number = 2, .soil = testSand()}},
       .policy = {}});
+}
+
+/// Sand with the deviations of its class, and a soil drawn from them, each parameter within two deviations.
+inline terramech::SoilPrior sandPrior() {
+  return {.mean = testSand(),
+          .deviation = {.cohesion_Pa = 300.0,
+                        .friction_angle_rad = 0.07,
+                        .sinkage_exponent = 0.15,
+                        .frictional_modulus = 150000.0,
+                        .shear_modulus_m = 0.25 * testSand().shear_modulus_m,
+                        .rut_stiffness = 1.0}};
+}
+inline terramech::Soil drawnSand(std::mt19937_64& random) {
+  terramech::Soil soil = testSand();
+  const terramech::SoilDeviation std = sandPrior().deviation;
+  std::normal_distribution<double> normal;
+  const auto draw = [&](double& value, double deviation) {
+    value = std::max(value + deviation * std::clamp(normal(random), -2.0, 2.0), 0.3 * value);
+  };
+  draw(soil.cohesion_Pa, std.cohesion_Pa);
+  draw(soil.friction_angle_rad, std.friction_angle_rad);
+  draw(soil.sinkage_exponent, std.sinkage_exponent);
+  draw(soil.frictional_modulus, std.frictional_modulus);
+  draw(soil.shear_modulus_m, std.shear_modulus_m);
+  draw(soil.rut_stiffness, std.rut_stiffness);
+  return soil;
+}
+
+/// Ground of one class of a rover with four wheels.
+inline std::shared_ptr<const GroundModel> groundOf(const GroundClass& ground) {
+  return std::make_shared<GroundModel>(
+      GroundModel::Parts{.rover = testRover(), .classes = {ground}, .policy = {}});
 }
 
 /// Waves of the given height: 1.5 m yields slopes up to 17 degrees, some too steep for weak sand.

@@ -289,37 +289,16 @@ TEST(DrivePosterior, ConstantSlipDoesNotInform) {
 // deviation is true, with one slip and with two.
 TEST(DrivePosterior, IsCalibratedForSoilsOfTheClass) {
   constexpr int kDrives = 60;
-  const terramech::SoilPrior prior = {.mean = testSand(),
-                                      .deviation = {.cohesion_Pa = 300.0,
-                                                    .friction_angle_rad = 0.07,
-                                                    .sinkage_exponent = 0.15,
-                                                    .frictional_modulus = 150000.0,
-                                                    .shear_modulus_m = 0.25 * testSand().shear_modulus_m,
-                                                    .rut_stiffness = 1.0}};
-  terramech::Rover rover = testRover();
-  const auto modelOf = [&](const GroundClass& ground) {
-    return std::make_shared<GroundModel>(
-        GroundModel::Parts{.rover = rover, .classes = {ground}, .policy = {}});
-  };
-  const GroundClass ground = groundClass(1, prior, rover);
-  const auto of_class = modelOf(ground);
+  const GroundClass ground = groundClass(1, sandPrior(), testRover());
+  const auto of_class = groundOf(ground);
   for (const bool twice : {false, true}) {
     std::mt19937_64 random(8);
-    std::normal_distribution<double> normal;
-    const auto draw = [&](double& value, double std) {
-      value = std::max(value + std * std::clamp(normal(random), -2.0, 2.0), 0.3 * value);
-    };
     double bias = 0.0;
     int one = 0, two = 0;
     for (int drive = 0; drive < kDrives; ++drive) {
       GroundClass drawn = ground;
-      draw(drawn.soil.cohesion_Pa, prior.deviation.cohesion_Pa);
-      draw(drawn.soil.friction_angle_rad, prior.deviation.friction_angle_rad);
-      draw(drawn.soil.sinkage_exponent, prior.deviation.sinkage_exponent);
-      draw(drawn.soil.frictional_modulus, prior.deviation.frictional_modulus);
-      draw(drawn.soil.shear_modulus_m, prior.deviation.shear_modulus_m);
-      draw(drawn.soil.rut_stiffness, prior.deviation.rut_stiffness);
-      const auto truth = modelOf(drawn);
+      drawn.soil = drawnSand(random);
+      const auto truth = groundOf(drawn);
       const Estimate found =
           driven(*of_class, *truth, {.twice = twice}, static_cast<unsigned>(drive)).classes[0].departure;
       const double off = found.value - departureOf(*truth, *of_class);

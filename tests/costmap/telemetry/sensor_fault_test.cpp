@@ -435,8 +435,7 @@ TEST(FaultyDrive, TorqueAndSinkageAloneRaiseNothing) {
     }
 }
 
-// Property: dangerous rows inserted anywhere in a drive improve no estimate beyond that of the drive without
-// them.
+// Property: dangerous rows inserted anywhere in a drive raise no estimate above that of the drive without them.
 TEST(FaultyDrive, DangerousRowsRaiseNothing) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> share(0.0, 1.0);
@@ -455,12 +454,15 @@ TEST(FaultyDrive, DangerousRowsRaiseNothing) {
       rows.insert(rows.begin() + at + 1, danger);
     }
     addDrive(with, tableOf(rows));
-    EXPECT_EQ(raised(without, with), 0) << trial;
+    for (int row = 0; row < kSide; ++row)
+      for (int column = 0; column < kSide; ++column)
+        ASSERT_LE(with.ground({column, row})->pull.value, without.ground({column, row})->pull.value + 1e-9)
+            << trial;
   }
 }
 
 // Property: two rows of a trap in the middle of a sound drive lower the estimate at their place.
-TEST(FaultyDrive, TrapOfTwoRowsLowersTheEstimateDespiteSpikeFilter) {
+TEST(FaultyDrive, TrapOfTwoRowsLowersTheEstimate) {
   TraversabilityMap before = hills(), after = hills();
   std::vector<Row> rows = soundDrive(before);
   addDrive(before, tableOf(rows));
