@@ -194,11 +194,11 @@ std::pair<nlohmann::json, std::string> drivesOf(const costmap::TraversabilityMap
         const auto to = with.ground(cell), from = without.ground(cell);
         if (!to || std::abs(to->pull.value - from->pull.value) <= 0.05) continue;
         const auto *own = map.evidence().evidence(cell), *rest = less.evidence().evidence(cell);
-        const bool failed = own && own->most_pull < (rest ? std::fmin(rest->most_pull, 1.0F) : 1.0F);
+        const double others = rest ? std::fmin(rest->bound().most_pull, 1.0) : 1.0;
         const std::string way = to->pull.value < from->pull.value ? "fell" : "rose",
-                          why = failed ? "a wheel failed here"
-                                : own  ? "readings here"
-                                       : "readings nearby, or the mean of the class";
+                          why = own && own->bound().most_pull < others ? "a wheel failed here"
+                                : own                                  ? "readings here"
+                                      : "readings nearby, or the mean of the class";
         const maps::Point at = map.grid().centre(cell);
         one[way][why].push_back({at.x_m, at.y_m});
         ++blocks[way + ": " + why];

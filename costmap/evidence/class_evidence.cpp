@@ -4,8 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include <boost/container/small_vector.hpp>
-
 #include <talus/costmap/evidence/class_evidence.hpp>
 
 namespace talus::costmap {
@@ -21,44 +19,11 @@ double sparseKernel(const maps::Point& a, const maps::Point& b, double correlati
   return costmap::sparseKernel(std::sqrt(squared), correlation_length_m);
 }
 
-// Replaces A by U of A = U^T U: row-major upper triangle with reciprocal diagonal. The noise makes A positive
-// definite. The inner loops here and below run along rows without a running sum, so that their steps are
-// independent.
-void factorise(std::vector<double>& a, std::size_t n) {
-  for (std::size_t j = 0; j < n; ++j) {
-    double* const row = a.data() + j * n;
-    row[j] = 1.0 / std::sqrt(row[j]);
-    for (std::size_t k = j + 1; k < n; ++k) row[k] *= row[j];
-    for (std::size_t i = j + 1; i < n; ++i) {
-      const double factor = row[i];
-      if (factor == 0.0) continue;
-      double* const below = a.data() + i * n;
-      for (std::size_t k = i; k < n; ++k) below[k] -= factor * row[k];
-    }
-  }
-}
-
-// Solves U^T x = b in place; leading zeros are skipped.
-void solveLower(const std::vector<double>& u, std::span<double> x) {
-  const std::size_t n = x.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    if (x[k] == 0.0) continue;
-    const double* const row = u.data() + k * n;
-    const double value = x[k] *= row[k];
-    for (std::size_t i = k + 1; i < n; ++i) x[i] -= row[i] * value;
-  }
-}
-
-// Solves U x = b in place; l is the transpose of U.
-void solveUpper(const std::vector<double>& l, std::span<double> x) {
-  for (std::size_t k = x.size(); k-- > 0;) {
-    const double* const row = l.data() + k * x.size();
-    const double value = x[k] *= row[k];
-    for (std::size_t i = 0; i < k; ++i) x[i] -= row[i] * value;
-  }
-}
-
 }  // namespace
+
+std::int64_t fixedPoint(double value) noexcept {
+  return static_cast<std::int64_t>(std::llround(value * SourceReadings::kUnit));
+}
 
 double sparseKernel(double distance_m, double correlation_length_m) noexcept {
   const double d = distance_m / correlation_length_m;
@@ -77,37 +42,35 @@ double otherSoilProbability(double difference, double variance) noexcept {
 
 GaussianProcess::GaussianProcess(std::vector<PlaceEvidence> evidence, const Variation& variation)
     : evidence_(std::move(evidence)), variation_(variation) {
-  const std::size_t n = evidence_.size();
+  const auto n = static_cast<Eigen::Index>(evidence_.size());
   const double prior = variation_.pull_std * variation_.pull_std;
-  factor_.assign(n * n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i; j < n; ++j)
-      factor_[i * n + j] =
-          sparseKernel(evidence_[i].place, evidence_[j].place, variation_.correlation_length_m);
-    factor_[i * n + i] += evidence_[i].variance / prior;
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const PlaceEvidence& own = evidence_[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < n; ++j)
+      covariance(i, j) = sparseKernel(own.place, evidence_[static_cast<std::size_t>(j)].place,
+                                      variation_.correlation_length_m);
+    covariance(i, i) += own.variance / prior;
   }
-  factorise(factor_, n);
-  transposed_.assign(n * n, 0.0);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i; j < n; ++j) transposed_[j * n + i] = factor_[i * n + j];
+  factor_.compute(covariance);
 }
 
 LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
-  boost::container::small_vector<double, 64> weight;
-  for (const PlaceEvidence& e : evidence_)
-    weight.push_back(sparseKernel(place, e.place, variation_.correlation_length_m));
-  if (std::ranges::all_of(weight, [](double k) { return k == 0.0; }))
+  Eigen::VectorXd kernel(static_cast<Eigen::Index>(evidence_.size()));
+  for (Eigen::Index i = 0; i < kernel.size(); ++i)
+    kernel[i] =
+        sparseKernel(place, evidence_[static_cast<std::size_t>(i)].place, variation_.correlation_length_m);
+  if (kernel.isZero(0.0))
     return {.departure = {.pull = {0.0, variation_.pull_std}, .sinkage = {0.0, variation_.sinkage_std}}};
-  solveLower(factor_, {weight.data(), weight.size()});
-  double explained = 0.0;
-  for (const double v : weight) explained += v * v;
-  solveUpper(transposed_, {weight.data(), weight.size()});
+  const Eigen::VectorXd weight = factor_.solve(kernel);
+  const double explained = kernel.dot(weight);
   LearnedPlace out{.departure = {}, .any = true};
   GroundBelief& belief = out.departure;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
-    out.weight += weight[i];
-    belief.pull.value += weight[i] * evidence_[i].pull;
-    if (!std::isnan(evidence_[i].sinkage)) belief.sinkage.value += weight[i] * evidence_[i].sinkage;
+    const double w = weight[static_cast<Eigen::Index>(i)];
+    out.weight += w;
+    belief.pull.value += w * evidence_[i].pull;
+    if (!std::isnan(evidence_[i].sinkage)) belief.sinkage.value += w * evidence_[i].sinkage;
   }
   const double left = std::sqrt(std::fmax(1.0 - explained, 0.0));
   belief.pull.std = left * variation_.pull_std;
@@ -117,16 +80,12 @@ LearnedPlace GaussianProcess::learned(const maps::Point& place) const {
 
 namespace {
 
-constexpr double kUnit = 1048576.0;  // fixed-point units per 1
+constexpr double kUnit = SourceReadings::kUnit;
 // Prior probability that the sensors of a source are faulty, by Trust.
 constexpr std::array<double, 3> kFaulty{0.5, 0.07, 0.001};
 constexpr double kFaultStd = 2.0;      // departures that faulty sensors read, over mean_std
 constexpr double kLeastError = 0.005;  // least error of a source [-]
 constexpr double kWeightStep = 1.0 / 64.0;
-
-std::int64_t fixed(double value) {
-  return static_cast<std::int64_t>(std::llround(value * kUnit));
-}
 
 // Rounded towards 0, so that little evidence leaves a class as it was.
 double rounded(double value, double step) noexcept {
@@ -159,19 +118,19 @@ void ClassEvidence::count(std::span<const SourcePull> pulls, double prior, doubl
         places * variance / (variance + one.variance()) *
         (1.0 - otherSoilProbability(departure, variance + q * q + one.variance() + shared2));
     Sums& sums = sources_[one.source];
-    sums.weight += sign * fixed(weight);
-    sums.departure += sign * fixed(weight * departure);
-    sums.shared += sign * fixed(weight * one.shared);
+    sums.weight += sign * fixedPoint(weight);
+    sums.departure += sign * fixedPoint(weight * departure);
+    sums.shared += sign * fixedPoint(weight * one.shared);
     if (sums.weight == 0) sources_.erase(one.source);
     most = std::max(most, weight);
   }
-  places_ += sign * fixed(most);
+  places_ += sign * fixedPoint(most);
 }
 
 void ClassEvidence::countSinkage(double departure, double places, int sign) {
   const double limit = 2.0 * ground_.sinkage_std;  // a deeper place counts as that deep
-  sinkage_.weight += sign * fixed(places);
-  sinkage_.departure += sign * fixed(places * std::clamp(departure, -limit, limit));
+  sinkage_.weight += sign * fixedPoint(places);
+  sinkage_.departure += sign * fixedPoint(places * std::clamp(departure, -limit, limit));
 }
 
 double ClassEvidence::places() const noexcept {

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Cholesky>
+
 #include <talus/costmap/evidence/evidence.hpp>
 #include <talus/costmap/ground/ground_model.hpp>
 #include <talus/maps/maps.hpp>
@@ -38,6 +40,9 @@ double sparseKernel(double distance_m, double correlation_length_m) noexcept;
 /// have the variance `variance` on the same soil, and the standard deviation 0.3 on another one.
 double otherSoilProbability(double difference, double variance) noexcept;
 
+/// Returns a number in units of 1/SourceReadings::kUnit, rounded. Sums of such numbers do not depend on their order.
+std::int64_t fixedPoint(double value) noexcept;
+
 /// Estimate of the ground at a place by the Gaussian process.
 struct LearnedPlace {
   GroundBelief departure;  ///< departure from the class mean, with standard deviation
@@ -62,8 +67,7 @@ class GaussianProcess {
  private:
   std::vector<PlaceEvidence> evidence_;
   Variation variation_;
-  std::vector<double> factor_;      // upper Cholesky factor of K + noise, in units of the prior variance
-  std::vector<double> transposed_;  // transpose of factor_
+  Eigen::LLT<Eigen::MatrixXd> factor_;  // of K + noise, in units of the prior variance
 };
 
 /// What one combination of sound and faulty sources makes of a terrain class. A source is the readings of one

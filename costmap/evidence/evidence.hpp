@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -52,6 +54,11 @@ struct GroundBound {
   bool any() const noexcept { return !std::isnan(most_pull) || !std::isnan(least_sinkage); }
   /// Lowers the upper bound of DP/W to `pull` [-] if `pull` is lower.
   void lower(double pull) noexcept { most_pull = std::fmin(most_pull, pull); }
+  /// Adopts the stricter of its own and another bound of each quantity.
+  void join(const GroundBound& other) noexcept {
+    lower(other.most_pull);
+    least_sinkage = std::fmax(least_sinkage, other.least_sinkage);
+  }
 };
 
 /// A reading and the terrain class of the ground under the wheel, as an index into
@@ -191,56 +198,6 @@ struct JournalRow {
   RowWheel wheel{};              ///< wheel to which the row refers
 };
 
-/// Evidence of one block: counts of quantised readings, and the numbers computed from the counts. A block is
-/// a square of cells whose evidence is stored together. The order of readings has no effect: equal readings
-/// give bit-identical results.
-
-/// Number of equal quantised readings of one drive in one block, at most 65535 (saturated).
-struct ReadingCount {
-  std::uint8_t kind = 0;    ///< measured quantity and certainty of the reading, a number of reading_kind
-  std::uint8_t step = 0;    ///< value in steps of 0.01, see pullReading() and sinkageReading()
-  std::uint16_t count = 0;  ///< number of readings
-  std::uint16_t drive = 0;  ///< number of the drive (WheelObservation::drive)
-
-  friend bool operator==(const ReadingCount&, const ReadingCount&) = default;
-};
-
-/// Kinds of readings. A drawbar pull over load DP/W has one of eight grades g of certainty with the standard
-/// deviation 0.025 * 2^(g/2), 0.025 to 0.28 [-]. Pulls of verified sensors have, in addition, a grade of the
-/// error that is common to all readings of their drive.
-namespace reading_kind {
-inline constexpr std::uint8_t kGrades = 8;        ///< number of grades of certainty
-inline constexpr std::uint8_t kSharedGrades = 8;  ///< number of grades of the shared error
-/// kPull + g + 8 h is the kind of a pull of verified sensors, with the grade of certainty g and the grade h of
-/// the shared error.
-inline constexpr std::uint8_t kPull = 0;
-/// kPullUnverified + g is the kind of a pull of other sensors, with the grade of certainty g.
-inline constexpr std::uint8_t kPullUnverified = kGrades * kSharedGrades;
-/// Kinds of sinkages of verified and of other sensors.
-inline constexpr std::uint8_t kSinkage = kPullUnverified + kGrades;
-inline constexpr std::uint8_t kSinkageUnverified = kSinkage + 1;
-inline constexpr std::uint8_t kMostPullHere = kSinkage + 2;      ///< upper bound of DP/W
-inline constexpr std::uint8_t kLeastSinkageHere = kSinkage + 3;  ///< lower bound of z/r
-/// kPullTwice + g + 8 h is the kind of a pull whose slip was measured twice.
-inline constexpr std::uint8_t kPullTwice = kSinkage + 4;
-inline constexpr std::uint8_t kCount = kPullTwice + kGrades * kSharedGrades;  ///< number of kinds
-}  // namespace reading_kind
-
-/// Returns the standard deviation of DP/W for a grade of the shared error [-]: 0 for grade 0, and 0.02 *
-/// 1.5^(grade - 1) for the grades 1 to 7.
-double sharedStd(std::size_t grade) noexcept;
-
-/// Returns a drawbar pull over load DP/W as a reading, in steps of 0.01 from -1.28. `shared_std` >= 0 is the
-/// standard deviation of the error common to all readings of the drive [-], rounded up to a grade. A reading
-/// whose shared error exceeds the greatest grade or is unknown (NaN) counts as unverified.
-ReadingCount pullReading(const Estimate& pull, Trust trust, double shared_std = 0.0) noexcept;
-/// Returns a sinkage over wheel radius z/r as a reading in steps of 0.01 from 0.
-ReadingCount sinkageReading(double sinkage_over_radius, bool verified) noexcept;
-
-/// Returns the bounds of a block as readings, rounded towards danger; empty if neither pull nor sinkage is
-/// bounded.
-std::vector<ReadingCount> boundReadings(const GroundBound& bound);
-
 /// Readings with a common error: those of one drive whose sensors were verified in the same way.
 struct Source {
   std::uint16_t drive = 0;
@@ -261,108 +218,60 @@ struct SourcePull {
   double variance() const noexcept;
 };
 
-/// Returns the pulls of a block by source, in ascending order.
-std::vector<SourcePull> pullsOf(std::span<const ReadingCount> counts);
+/// Readings of one source in one block: sums, and the strictest bounds. The sums are in fixed point, so that they do
+/// not depend on the order of the readings, and readings can be removed exactly.
+struct SourceReadings {
+  static constexpr double kUnit = 1048576.0;  ///< of the sums, per 1
+  std::int64_t weight = 0;                    ///< sum of the inverse variances w of the pulls
+  std::int64_t pull = 0;                      ///< sum of w DP/W
+  std::int64_t shared = 0;    ///< sum of w times the error common to all readings of the source
+  std::int64_t sinkages = 0;  ///< number of sinkages
+  std::int64_t sinkage = 0;   ///< sum of the sinkages over radius z/r
+  GroundBound bound{};
 
-/// Evidence of one terrain class in a block, computed from the counts of its readings.
+  /// Adds a pull whose standard deviation counts as at least 0.025, and whose shared error is `shared_std` [-].
+  void addPull(const Estimate& pull, double shared_std) noexcept;
+  void addSinkage(double sinkage_over_radius) noexcept;
+  /// Adds (sign 1) or removes (-1) readings; if bounds are among the removed ones, all bounds.
+  void add(const SourceReadings& other, int sign) noexcept;
+  bool empty() const noexcept { return weight == 0 && sinkages == 0 && !bound.any(); }
+};
+
+/// Evidence of one terrain class in a block. A block is a square of cells whose evidence is stored together.
 struct BlockEvidence {
-  std::uint8_t terrain_class = 0;   ///< number of the terrain class
-  std::uint8_t place_in_brick = 0;  ///< index of the block within its brick, set by EvidenceBricks
-  std::uint32_t updated_s = 0;      ///< telemetry time of the newest reading, rounded down [s]
-  std::uint8_t reach = 0;           ///< position uncertainty of the readings, in steps of 0.1 m
-  float pull = 0.0F;                ///< mean DP/W of all sources [-]; NaN: no reading
-  float sinkage = 0.0F;             ///< mean z/r of verified sensors, or of the others [-]; NaN: not measured
-  bool sinkage_verified = false;    ///< true if `sinkage` is of verified sensors
-  float most_pull = 0.0F;           ///< least upper bound of DP/W [-]; NaN: no bound
-  float least_sinkage = 0.0F;       ///< greatest lower bound of z/r [-]; NaN: no bound
+  std::uint32_t updated_s = 0;  ///< telemetry time of the newest reading, rounded down [s]
+  std::uint8_t reach = 0;       ///< position uncertainty of the readings, in steps of 0.1 m
+  std::map<Source, SourceReadings> sources{};
 
   /// Returns the position uncertainty of the readings [m].
   double reach_m() const noexcept { return 0.1 * reach; }
+  /// Returns the pulls by source, in ascending order.
+  std::vector<SourcePull> pulls() const;
+  /// Returns the mean DP/W of all sources [-]; NaN without a reading.
+  double pull() const;
+  /// Returns the number of pull readings, each weighted by (0.05/std)^2 [-].
+  double samples() const noexcept;
+  /// Returns the mean z/r of verified sensors or, without any, of the others [-]; NaN if not measured.
+  double sinkage() const noexcept;
+  bool sinkageVerified() const noexcept;
+  /// Returns the strictest bounds of all sources.
+  GroundBound bound() const noexcept;
 };
-static_assert(sizeof(BlockEvidence) == 32);
 
-/// Computes the fields `pull` to `least_sinkage` of `block` from its counts.
-void summarise(std::span<const ReadingCount> counts, BlockEvidence& block);
-
-/// Returns the number of pull readings, each weighted by (0.05/std)^2 [-].
-double samples(std::span<const ReadingCount> counts) noexcept;
-
-/// Key of evidence: one terrain class of one block. A block is a square of cells. Columns and rows of blocks
-/// count from the map's south-west corner.
+/// Key of evidence: one terrain class of one block. Columns and rows of blocks count from the map's south-west corner.
 struct BlockOfClass {
   int column = 0, row = 0;
   std::uint8_t terrain_class = 0;  ///< number of the terrain class
-};
 
-/// The evidence of a map, stored in bricks of 8x8 blocks. Each brick has a sorted list of its blocks with
-/// evidence and a sorted list of their readings. A block takes 44 bytes, and 12 bytes for each distinct
-/// reading of a drive; a block without evidence takes less than one byte. (For comparison: a leaf of an
-/// OctoMap tree takes 64 bytes with its allocation, and its parents another 64.) Not thread-safe while
-/// changed; pointers are valid until the next change.
-class EvidenceBricks {
- public:
-  /// Makes an empty store for a map with this number of block columns and rows.
-  EvidenceBricks(int block_columns, int block_rows);
-
-  /// Returns the evidence of a class in a block; null if there is no evidence or the block lies outside the map.
-  const BlockEvidence* find(const BlockOfClass& block) const noexcept;
-  /// Returns the evidence of find() for modification; creates the evidence if absent. The block must lie
-  /// inside the map.
-  BlockEvidence& at(const BlockOfClass& block);
-  /// Removes evidence that at() created; its readings must have been removed.
-  void erase(const BlockOfClass& block);
-  /// Returns the readings of a class in a block, sorted by kind, value and drive; empty without readings.
-  std::vector<ReadingCount> counts(const BlockOfClass& block) const;
-  /// Adds reading.count readings of one kind, value and drive to evidence that at() created; the count
-  /// saturates at 65535.
-  void count(const BlockOfClass& block, const ReadingCount& reading);
-  /// Removes reading.count readings from evidence that at() created. A saturated count (65535) is removed only
-  /// by a saturated one; evidence without such readings is not changed.
-  void uncount(const BlockOfClass& block, const ReadingCount& reading);
-
-  /// Callback with a key and its evidence.
-  using Visit = std::function<void(const BlockOfClass&, const BlockEvidence&)>;
-
-  /// A rectangle of blocks, given by columns and rows, both corners included. The rectangle may extend beyond
-  /// the map.
-  struct Box {
-    int west, south, east, north;
-  };
-  /// Calls `visit` for the evidence within a box, brick by brick.
-  void visit(const Box& box, const Visit& visit) const;
-  /// Calls `visit` for all evidence, by ascending row, column and class.
-  void visitAll(const Visit& visit) const;
-
- private:
-  struct BlockReadings {
-    std::uint32_t block = 0;  // sort key: place in the brick, class
-    ReadingCount reading;
-  };
-  struct Brick {
-    std::vector<BlockEvidence> blocks;
-    std::vector<BlockReadings> readings;
-  };
-
-  bool contains(int column, int row) const noexcept {
-    return column >= 0 && row >= 0 && column < columns_ && row < rows_;
+  friend auto operator<=>(const BlockOfClass& a, const BlockOfClass& b) noexcept {
+    return std::tie(a.row, a.column, a.terrain_class) <=> std::tie(b.row, b.column, b.terrain_class);
   }
-  std::size_t brickOf(int column, int row) const noexcept;
-  static std::uint64_t orderOf(const BlockReadings& readings) noexcept;
-  static std::vector<BlockReadings>::iterator placeOf(std::vector<BlockReadings>& readings,
-                                                      const BlockReadings& one);
-
-  int columns_, rows_;
-  int brick_columns_;
-  std::vector<Brick> bricks_;
 };
 
-/// All readings of one terrain class in a block, as map files store them.
+/// Evidence of one terrain class in one block, with its key.
 struct SavedBlock {
   BlockOfClass block;
-  /// Telemetry time of the newest reading, rounded down [s].
-  std::uint32_t updated_s = 0;
-  std::uint8_t reach = 0;  ///< position uncertainty of the readings, in steps of 0.1 m
-  std::vector<ReadingCount> counts;
+  BlockEvidence evidence;
 };
 
 struct ClassState;
@@ -388,8 +297,8 @@ class EvidenceField {
   /// observation lies outside the map or on ground without a class, or if it contains neither an estimate nor
   /// a bound.
   std::optional<maps::CellBox> add(const WheelObservation& observation);
-  /// Returns the block and the quantised readings that add() would store for an observation; nullopt if add()
-  /// would return nullopt.
+  /// Returns the block and the readings that add() would store for an observation; nullopt if add() would return
+  /// nullopt.
   std::optional<SavedBlock> readingsOf(const WheelObservation& observation) const;
   /// Removes stored readings. Returns the box of cells whose estimate may change; nullopt if the block has no
   /// evidence.
@@ -397,8 +306,6 @@ class EvidenceField {
 
   /// Returns the evidence of the block that contains a cell, for the cell's class; null without evidence.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
-  /// Returns the number of pull readings of the evidence, each weighted by (0.05/std)^2 [-].
-  double samplesOf(maps::Cell cell) const;
 
   /// Returns the estimate for ground of a class without nearby evidence.
   GroundBelief classBelief(int class_index) const;
@@ -425,8 +332,7 @@ class EvidenceField {
 
  private:
   bool standsOnOneClass(const WheelObservation& observation, int class_index) const;
-  enum class Count { Add, TakeOff };
-  maps::CellBox count(const BlockOfClass& where, const SavedBlock& readings, Count how = Count::Add);
+  maps::CellBox count(const SavedBlock& readings, int sign);
   ClassState stateOf(int class_index) const;
 
   std::shared_ptr<const GroundSite> site_;

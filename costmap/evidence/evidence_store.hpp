@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -83,17 +84,24 @@ struct EvidenceStore {
   explicit EvidenceStore(std::shared_ptr<const GroundSite> of)
       : site(std::move(of)),
         blocks(site),
-        bricks(blocks.columns(), blocks.rows()),
         reach(site),
         classes(site->model->parts().classes.begin(), site->model->parts().classes.end()) {}
 
   std::shared_ptr<const GroundSite> site;
   BlockGrid blocks;
-  EvidenceBricks bricks;
+  std::map<BlockOfClass, BlockEvidence> evidence{};
   EvidenceReach reach;
   /// Evidence of each terrain class, in the order of the model's classes.
   std::vector<ClassEvidence> classes;
 
+  /// Calls visit(block, evidence) for all evidence in a rectangle of blocks, columns and rows included.
+  template <typename Visit>
+  void visit(const maps::CellBox& box, Visit visit) const {
+    for (int row = box.first.row; row <= box.last.row; ++row)
+      for (auto at = evidence.lower_bound({box.first.column, row, 0});
+           at != evidence.end() && at->first.row == row && at->first.column <= box.last.column; ++at)
+        visit(at->first, at->second);
+  }
   const GroundModel& model() const noexcept { return *site->model; }
   const GroundClass& groundClass(int class_index) const noexcept {
     return model().parts().classes[static_cast<std::size_t>(class_index)];

@@ -90,21 +90,21 @@ LocalGround::LocalGround(const EvidenceStore& store, const BlockOfClass& patch, 
   const GroundBelief& prior = store.model().prior(of.class_index);
   const int number = store.groundClass(of.class_index).number;
   std::vector<Block> blocks;
-  store.bricks.visit(
-      {patch.column - reach, patch.row - reach, patch.column + kPatchBlocks + reach - 1,
-       patch.row + kPatchBlocks + reach - 1},
+  store.visit(
+      {{patch.column - reach, patch.row - reach},
+       {patch.column + kPatchBlocks + reach - 1, patch.row + kPatchBlocks + reach - 1}},
       [&](const BlockOfClass& at, const BlockEvidence& e) {
         const maps::Point middle = store.blocks.middleOf(store.blocks.blockAt(at.column, at.row));
         const bool alike = at.terrain_class == number;
-        if ((alike || e.reach > 0) && !(std::isnan(e.most_pull) && std::isnan(e.least_sinkage)))
-          bounds_.push_back(
-              {middle, e.reach_m(), static_cast<double>(e.most_pull), static_cast<double>(e.least_sinkage)});
+        if (const GroundBound bound = e.bound(); (alike || e.reach > 0) && bound.any())
+          bounds_.push_back({middle, e.reach_m(), bound.most_pull, bound.least_sinkage});
         const auto isNear = [&](int block) { return block >= -near && block < kPatchBlocks + near; };
-        if (!alike || std::isnan(e.pull) || !isNear(at.column - patch.column) || !isNear(at.row - patch.row))
+        std::vector<SourcePull> pulls = e.pulls();
+        if (!alike || pulls.empty() || !isNear(at.column - patch.column) || !isNear(at.row - patch.row))
           return;
-        const double sinkage = static_cast<double>(e.sinkage) - prior.sinkage.value - of.state.sinkage;
-        blocks.push_back({middle, pullsOf(store.bricks.counts(at)),
-                          e.sinkage_verified || std::isnan(sinkage) ? sinkage : std::max(sinkage, 0.0)});
+        const double sinkage = e.sinkage() - prior.sinkage.value - of.state.sinkage;
+        blocks.push_back({middle, std::move(pulls),
+                          e.sinkageVerified() || std::isnan(sinkage) ? sinkage : std::max(sinkage, 0.0)});
       });
   any_ = !blocks.empty() || !bounds_.empty();
   if (blocks.size() > kMostNeighbours) {

@@ -18,11 +18,12 @@ void set(const GroundBelief& strength, CellBelief& belief) {
   belief.sinkage_std = static_cast<float>(strength.sinkage.std);
 }
 
-void set(const BlockEvidence& own, double samples, CellBelief& belief) {
-  belief.evidence = static_cast<float>(samples);
-  const float weakest = std::fmin(own.pull, own.most_pull);
-  belief.evidence_pull = std::isnan(weakest) ? 0.0F : weakest;
-  belief.evidence_sinkage = std::fmax(0.0F, std::fmax(own.sinkage, own.least_sinkage));
+void set(const BlockEvidence& own, CellBelief& belief) {
+  const GroundBound bound = own.bound();
+  belief.evidence = static_cast<float>(own.samples());
+  const double weakest = std::fmin(own.pull(), bound.most_pull);
+  belief.evidence_pull = std::isnan(weakest) ? 0.0F : static_cast<float>(weakest);
+  belief.evidence_sinkage = static_cast<float>(std::fmax(0.0, std::fmax(own.sinkage(), bound.least_sinkage)));
   belief.updated_s = own.updated_s;
 }
 
@@ -40,8 +41,7 @@ CellBelief PlaceBeliefs::at(maps::Cell cell) {
   belief.terrain_class =
       static_cast<std::uint8_t>(map_.model().parts().classes[static_cast<std::size_t>(index)].number);
   set(beliefs_.at(cell, index).ground, belief);
-  if (const BlockEvidence* own = map_.evidence().evidence(cell))
-    set(*own, map_.evidence().samplesOf(cell), belief);
+  if (const BlockEvidence* own = map_.evidence().evidence(cell)) set(*own, belief);
   if (const auto ranked = map_.costs().ranked(cell)) {
     belief.category = ranked->category;
     belief.confidence = ranked->confidence;

@@ -178,56 +178,6 @@ maps::Raster<Hazard> declared(const TraversabilityMap& map) {
   return hazards;
 }
 
-// Header of a block in the file; its readings follow.
-struct BlockHeader {
-  std::int32_t column = 0, row = 0;
-  std::uint32_t updated_s = 0;
-  std::uint32_t readings = 0;
-  std::uint16_t unused = 0;
-  std::uint8_t terrain_class = 0, reach = 0;
-};
-static_assert(sizeof(BlockHeader) == 20 && sizeof(ReadingCount) == 6);
-
-std::string evidenceOf(const TraversabilityMap& map) {
-  std::string bytes;
-  const auto put = [&](const void* data, std::size_t size) {
-    bytes.append(static_cast<const char*>(data), size);
-  };
-  map.evidence().visit([&](const SavedBlock& saved) {
-    const BlockHeader header{.column = saved.block.column,
-                             .row = saved.block.row,
-                             .updated_s = saved.updated_s,
-                             .readings = static_cast<std::uint32_t>(saved.counts.size()),
-                             .terrain_class = saved.block.terrain_class,
-                             .reach = saved.reach};
-    put(&header, sizeof header);
-    put(saved.counts.data(), saved.counts.size() * sizeof(ReadingCount));
-  });
-  return bytes;
-}
-
-// Restores the evidence; returns false for invalid bytes.
-bool restoreEvidence(std::string_view bytes, TraversabilityMap& map) {
-  while (!bytes.empty()) {
-    BlockHeader header;
-    if (bytes.size() < sizeof header) return false;
-    std::memcpy(&header, bytes.data(), sizeof header);
-    bytes.remove_prefix(sizeof header);
-    if (bytes.size() / sizeof(ReadingCount) < header.readings) return false;
-    SavedBlock saved{.block = {header.column, header.row, header.terrain_class},
-                     .updated_s = header.updated_s,
-                     .reach = header.reach,
-                     .counts = std::vector<ReadingCount>(header.readings)};
-    std::memcpy(saved.counts.data(), bytes.data(), header.readings * sizeof(ReadingCount));
-    bytes.remove_prefix(header.readings * sizeof(ReadingCount));
-    const bool kinds = std::all_of(saved.counts.begin(), saved.counts.end(), [](const ReadingCount& r) {
-      return r.kind < reading_kind::kCount && r.count > 0;
-    });
-    if (!kinds || saved.counts.empty() || !map.restore(saved)) return false;
-  }
-  return true;
-}
-
 // Section of a cost layer: name, newline, cost of unseen cells, raster.
 std::string bytesOf(const CostLayer& layer) {
   const auto& values = layer.added_J_per_m.values();
@@ -256,7 +206,9 @@ MapText textOf(const TraversabilityMap& map) {
                .files = map.elevation().files,
                .footprint_radius_m = map.surface().footprintRadius_m(),
                .ground = map.model().parts(),
-               .refused = map.surface().refused()};
+               .refused = map.surface().refused(),
+               .drives = map.drives()};
+  map.evidence().visit([&](const SavedBlock& saved) { text.evidence.push_back(saved); });
   if (map.elevation().georeference) text.coordinate_system = map.elevation().georeference->system();
   return text;
 }
@@ -291,14 +243,6 @@ void writeMap(const TraversabilityMap& map, std::iostream& stream) {
   trailer.section("CLAS", map.surface().classes().values().data(), map.surface().classes().values().size());
   const maps::Raster<Hazard> hazards = declared(map);
   trailer.section("HAZD", hazards.values().data(), hazards.values().size());
-  const std::string evidence = evidenceOf(map);
-  trailer.section("EVID", evidence.data(), evidence.size());
-  std::string drives;
-  for (auto [id, note] : map.drives()) {
-    std::ranges::replace(note.sensors, '\n', ' ');
-    drives += id + '\t' + std::to_string(note.number) + '\t' + note.sensors + '\n';
-  }
-  trailer.section("DRIV", drives.data(), drives.size());
   for (const CostLayer& layer : map.surface().costLayers()) {
     const std::string bytes = bytesOf(layer);
     trailer.section("COST", bytes.data(), bytes.size());
@@ -330,8 +274,6 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
   layers.elevation.elevation_m = trailer.raster<float>("ELEV", text.grid);
   layers.classes = trailer.raster<std::uint8_t>("CLAS", text.grid);
   layers.declared = trailer.raster<Hazard>("HAZD", text.grid);
-  const std::string evidence = trailer.bytes("EVID");
-  std::istringstream drives(trailer.bytes("DRIV"));
   std::vector<std::string> costs;
   while (trailer.more()) costs.push_back(trailer.bytes("COST"));
   trailer.finish();
@@ -347,19 +289,15 @@ TraversabilityMap readMap(std::istream& stream, const MapReading& reading, const
     auto model = std::make_shared<GroundModel>(std::move(text.ground));
     TraversabilityMap map(std::move(layers), std::move(model),
                           {.footprint_radius_m = text.footprint_radius_m, .threads = reading.threads}, watch);
-    if (!restoreEvidence(evidence, map)) throw std::invalid_argument("its evidence is impossible");
+    for (const SavedBlock& saved : text.evidence)
+      if (!map.restore(saved)) throw std::invalid_argument("its evidence is impossible");
     for (const RefusedPlace& refused : text.refused)
       map.refuse(refused.place, refused.radius_m, refused.drive);
-    if (!evidence.empty())
+    if (!text.evidence.empty())
       map.publishAll();
     else if (!text.refused.empty())
       map.publish();
-    for (std::string line; std::getline(drives, line);) {
-      std::istringstream fields(line);
-      std::string id, number, sensors;
-      std::getline(std::getline(std::getline(fields, id, '\t'), number, '\t'), sensors);
-      map.noteDrive(id, {static_cast<std::uint16_t>(std::strtoul(number.c_str(), nullptr, 10)), sensors});
-    }
+    for (const auto& [id, drive] : text.drives) map.noteDrive(id, drive);
     return map;
   } catch (const std::invalid_argument& error) {
     throw InputError(

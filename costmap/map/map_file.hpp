@@ -1,12 +1,11 @@
 #pragma once
 
-#include <memory>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <talus/costmap/ground/ground_model.hpp>
-#include <talus/costmap/site/ground_site.hpp>
+#include <talus/costmap/costmap.hpp>
 #include <talus/maps/maps.hpp>
 
 namespace talus::costmap {
@@ -22,6 +21,8 @@ struct MapText {
   /// Rover, terrain classes and policy.
   GroundModel::Parts ground;
   std::vector<RefusedPlace> refused{};
+  std::vector<SavedBlock> evidence{};
+  std::map<std::string, TraversabilityMap::Drive> drives{};
 };
 
 /// Returns the content as bytes.

@@ -1,4 +1,7 @@
+#include <cstdint>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -50,6 +53,45 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(RefusedPlace, place, radius_m, d
 
 using nlohmann::json;
 
+// NOLINTBEGIN(readability-identifier-naming): the names that nlohmann-json looks for
+// Arrays, because there are many.
+void to_json(json& to, const SavedBlock& saved) {
+  const auto& [block, evidence] = saved;
+  json sources = json::array();
+  for (const auto& [source, of] : evidence.sources)
+    sources.push_back({source.drive, source.trust, of.weight, of.pull, of.shared, of.sinkages, of.sinkage,
+                       of.bound.most_pull, of.bound.least_sinkage});
+  to = {block.column, block.row, block.terrain_class, evidence.updated_s, evidence.reach, std::move(sources)};
+}
+
+void from_json(const json& from, SavedBlock& saved) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 56;
+  auto& [block, evidence] = saved;
+  json sources;
+  std::tie(block.column, block.row, block.terrain_class, evidence.updated_s, evidence.reach, sources) =
+      from.get<std::tuple<int, int, std::uint8_t, std::uint32_t, std::uint8_t, json>>();
+  for (const json& one : sources) {
+    if (one.at(1) > Trust::Twice) throw std::invalid_argument("its evidence is impossible");
+    SourceReadings& of = evidence.sources[{one.at(0), one.at(1)}];
+    std::size_t at = 2;
+    for (std::int64_t* sum : {&of.weight, &of.pull, &of.shared, &of.sinkages, &of.sinkage}) {
+      one.at(at++).get_to(*sum);
+      if (*sum < -kMost || *sum > kMost) throw std::invalid_argument("its evidence is impossible");
+    }
+    one.at(7).get_to(of.bound.most_pull);
+    one.at(8).get_to(of.bound.least_sinkage);
+  }
+}
+
+void to_json(json& to, const TraversabilityMap::Drive& drive) {
+  to = {drive.number, drive.sensors};
+}
+void from_json(const json& from, TraversabilityMap::Drive& drive) {
+  from.at(0).get_to(drive.number);
+  from.at(1).get_to(drive.sensors);
+}
+// NOLINTEND(readability-identifier-naming)
+
 std::string written(const MapText& text) {
   std::string bytes;
   json::to_cbor({{"grid", text.grid},
@@ -61,7 +103,9 @@ std::string written(const MapText& text) {
                  {"rover", text.ground.rover},
                  {"policy", text.ground.policy},
                  {"classes", text.ground.classes},
-                 {"refused", text.refused}},
+                 {"refused", text.refused},
+                 {"evidence", text.evidence},
+                 {"drives", text.drives}},
                 bytes);
   return bytes;
 }
@@ -79,9 +123,11 @@ MapText parsed(const std::string& bytes, const std::string& name) {
     all.at("policy").get_to(text.ground.policy);
     all.at("classes").get_to(text.ground.classes);
     all.at("refused").get_to(text.refused);
+    all.at("evidence").get_to(text.evidence);
+    all.at("drives").get_to(text.drives);
     if (!all.at("crs").is_null()) text.coordinate_system = all["crs"];
     return text;
-  } catch (const json::exception& error) {
+  } catch (const std::exception& error) {
     throw InputError({name, std::string("damaged or from another version: ") + error.what(),
                       "write the map again with talus costmap"});
   }

@@ -616,8 +616,8 @@ void TraversabilityMap::leaveOut(const std::string& id) {
   std::vector<SavedBlock> blocks;
   field_.visit([&](const SavedBlock& saved) { blocks.push_back(saved); });
   for (SavedBlock& block : blocks) {
-    std::erase_if(block.counts, [&](const ReadingCount& count) { return count.drive != number; });
-    if (!block.counts.empty()) costs_->noteLearned(*field_.forget(block));
+    std::erase_if(block.evidence.sources, [&](const auto& of) { return of.first.drive != number; });
+    if (!block.evidence.sources.empty()) costs_->noteLearned(*field_.forget(block));
   }
   for (const maps::CellBox& box : surface_->leaveOut(number)) costs_->noteChanged(box);
   std::erase_if(drives_, [&](const auto& drive) { return drive.second.number == number; });

@@ -33,7 +33,7 @@ constexpr std::array<double, 5> kResistances{-2.0, -1.0, 0.0, 1.0, 2.0};
 constexpr double kNodeStd = 0.4;
 constexpr double kNodesStd = 0.917;  // (1 - kNodeStd^2)^(1/2)
 constexpr double kReferenceSlip = 0.5;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoSlip = std::numeric_limits<double>::quiet_NaN();
 
 constexpr int kSlips = 146;
 constexpr double kLeastSlip = -0.5, kSlipStep = 0.01;
@@ -586,7 +586,7 @@ double SlipSensor::slipOf(double read, double gradient) const noexcept {
 std::pair<double, double> DriveEstimate::slip(std::size_t moment, std::pair<double, double> read,
                                               double gradient) const noexcept {
   const bool before = partOf(moment) < changed_from;
-  if (displaced(moment) || !(informing > kLeastInforming)) return {kNone, kNone};
+  if (displaced(moment) || !(informing > kLeastInforming)) return {kNoSlip, kNoSlip};
   if (!sensor.informs() || !(before || changed_informs))
     return {read.second / sensor.modulus, sensor.modulus};
   const double slip = sensor.slipOf(read.first - (before ? offset : changed_offset), gradient);

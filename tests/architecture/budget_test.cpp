@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 700},    {"terramech", 19718}, {"maps", 6710},     {"costmap", 12417},
-                           {"planner", 22439}, {"cli", 13744},       {"examples", 1538}, {"tests", 56396}};
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 19718}, {"maps", 6710},     {"costmap", 11602},
+                           {"planner", 22439}, {"cli", 13744},       {"examples", 1538}, {"tests", 56214}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

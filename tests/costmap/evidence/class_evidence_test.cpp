@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <random>
-#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -17,134 +15,70 @@
 namespace talus::costmap {
 namespace class_evidence_test {
 
-BlockEvidence summed(const std::vector<ReadingCount>& counts) {
-  BlockEvidence block;
-  summarise(counts, block);
-  return block;
-}
-
-ReadingCount times(ReadingCount reading, std::uint16_t count) {
-  reading.count = count;
-  return reading;
-}
-
-TEST(ReadingCount, EstimatesAreRoundedToNearestAndBoundsTowardsDanger) {
-  // Closed form: steps of 0.01 from -1.28; sinkage from 0
-  EXPECT_EQ(pullReading({0.109, 0.05}, Trust::Once).step, 139);
-  EXPECT_EQ(pullReading({0.104, 0.05}, Trust::Unverified).step, 138);
-  EXPECT_EQ(pullReading({-5.0, 0.05}, Trust::Once).step, 0);
-  EXPECT_EQ(sinkageReading(0.304, true).step, 30);
-  const auto bounds = boundReadings({.most_pull = 0.109, .least_sinkage = 0.301});
-  ASSERT_EQ(bounds.size(), 2U);
-  EXPECT_EQ(bounds[0].step, 138);
-  EXPECT_EQ(bounds[1].step, 31);
+void addTimes(BlockEvidence& block, Source source, const Estimate& pull, double shared_std, int times) {
+  for (int i = 0; i < times; ++i) block.sources[source].addPull(pull, shared_std);
 }
 
 // Property: the readings of a block are separated by drive and verification; a mean is weighted by inverse
-// variance, with the model error as the least variance. Closed forms.
+// variance, with the model error as the least variance. Closed forms. A reading of standard deviation 0.05 counts as
+// one sample.
 TEST(BlockEvidence, PullsAreSeparatedBySource) {
-  std::vector<ReadingCount> counts{times(pullReading({0.10, 0.05}, Trust::Once, 0.03), 3),
-                                   times(pullReading({0.20, 0.1}, Trust::Once, 0.03), 4),
-                                   times(pullReading({0.30, 0.05}, Trust::Twice, 0.02), 5),
-                                   times(pullReading({0.40, 0.05}, Trust::Unverified), 6)};
-  counts.push_back(counts.front());
-  counts.back().drive = 9;
-  const std::vector<SourcePull> pulls = pullsOf(counts);
+  BlockEvidence block;
+  addTimes(block, {0, Trust::Once}, {0.10, 0.05}, 0.03, 3);
+  addTimes(block, {0, Trust::Once}, {0.20, 0.1}, 0.03, 4);
+  addTimes(block, {0, Trust::Twice}, {0.30, 0.05}, 0.02, 5);
+  addTimes(block, {0, Trust::Unverified}, {0.40, 0.05}, 0.03, 6);
+  addTimes(block, {9, Trust::Once}, {0.10, 0.05}, 0.03, 3);
+  const std::vector<SourcePull> pulls = block.pulls();
   ASSERT_EQ(pulls.size(), 4U);
   EXPECT_EQ(pulls[0].source.trust, Trust::Unverified);
-  EXPECT_NEAR(pulls[1].pull, (3 * 0.10 / 0.0025 + 4 * 0.20 / 0.01) / (3 / 0.0025 + 4 / 0.01), 1e-9);
-  EXPECT_NEAR(pulls[1].variance(), 0.0004 + 1.0 / (3 / 0.0025 + 4 / 0.01), 1e-12);
-  EXPECT_NEAR(pulls[1].shared, 0.03, 1e-12);
+  EXPECT_NEAR(pulls[1].pull, (3 * 0.10 / 0.0025 + 4 * 0.20 / 0.01) / (3 / 0.0025 + 4 / 0.01), 1e-8);
+  EXPECT_NEAR(pulls[1].variance(), 0.0004 + 1.0 / (3 / 0.0025 + 4 / 0.01), 1e-8);
+  EXPECT_NEAR(pulls[1].shared, 0.03, 1e-8);
   EXPECT_EQ(pulls[2].source.trust, Trust::Twice);
   EXPECT_EQ(pulls[3].source.drive, 9);
+  EXPECT_NEAR(block.samples(), 18.0, 1e-8);
 }
 
 TEST(BlockEvidence, SinkageIsThatOfVerifiedSensorsIfAny) {
-  EXPECT_TRUE(std::isnan(summed({pullReading({0.3, 0.05}, Trust::Once)}).sinkage));
-  const BlockEvidence block =
-      summed({times(sinkageReading(0.1, true), 3), sinkageReading(0.5, true), sinkageReading(0.9, false)});
-  EXPECT_NEAR(block.sinkage, 0.2F, 1e-6F);
-  EXPECT_TRUE(block.sinkage_verified);
-  EXPECT_FALSE(summed({sinkageReading(0.1, false)}).sinkage_verified);
+  BlockEvidence block;
+  EXPECT_TRUE(std::isnan(block.sinkage()));
+  block.sources[{0, Trust::Unverified}].addSinkage(0.9);
+  EXPECT_FALSE(block.sinkageVerified());
+  EXPECT_NEAR(block.sinkage(), 0.9, 1e-6);
+  for (const double z : {0.1, 0.1, 0.1, 0.5}) block.sources[{0, Trust::Once}].addSinkage(z);
+  EXPECT_NEAR(block.sinkage(), 0.2, 1e-6);
+  EXPECT_TRUE(block.sinkageVerified());
 }
 
-// Property: the strictest of several bounds is kept, in any order and with any other readings.
-TEST(BlockEvidence, StrictestBoundIsKept) {
-  std::vector<ReadingCount> counts{times(pullReading({0.3, 0.05}, Trust::Once), 500)};
-  for (const GroundBound& bound : {GroundBound{-0.1, 0.6}, GroundBound{-0.3, 0.8}, GroundBound{0.05, 0.55}})
-    for (ReadingCount reading : boundReadings(bound)) counts.push_back(times(reading, 1));
-  std::ranges::sort(counts, {}, [](const ReadingCount& c) { return std::pair(c.kind, c.step); });
-  const BlockEvidence block = summed(counts);
-  EXPECT_LE(block.most_pull, -0.3F);
-  EXPECT_NEAR(block.most_pull, -0.3F, 0.011F);
-  EXPECT_GE(block.least_sinkage, 0.8F);
-  EXPECT_NEAR(block.least_sinkage, 0.8F, 0.011F);
-  EXPECT_TRUE(std::isnan(summed({times(pullReading({0.3, 0.05}, Trust::Once), 500)}).most_pull));
-}
-
-TEST(BlockEvidence, SampleCountIsInverseVarianceWeighted) {
-  // Closed form: a reading of standard deviation 0.05 counts as 1 sample, a reading of 0.1 as 1/4
-  EXPECT_NEAR(
-      samples(std::vector{pullReading({0.2, 0.05}, Trust::Once), pullReading({0.2, 0.1}, Trust::Once)}), 1.25,
-      1e-9);
-}
-
-using Key = std::tuple<int, int, std::uint8_t>;
-using Readings = std::map<std::tuple<std::uint8_t, std::uint8_t>, unsigned>;
-
-Readings tableOf(const std::vector<ReadingCount>& counts) {
-  Readings out;
-  for (const ReadingCount& c : counts) out[{c.kind, c.step}] = c.count;
-  EXPECT_EQ(out.size(), counts.size()) << "each value once";
-  return out;
-}
-
-// Property: after any sequence of insertions, in any order, the content equals that of a std::map with the
-// same insertions.
-TEST(EvidenceBricks, MatchesAPlainMap) {
+// Property: readings in any order give equal sums, and what is taken off leaves what there was; the strictest of
+// several bounds is kept.
+TEST(BlockEvidence, ReadingsAreTakenOffExactly) {
   std::mt19937 random(7);
-  EvidenceBricks bricks(21, 13);  // not a multiple of the side of a brick
-  std::map<Key, Readings> plain;
-  for (int i = 0; i < 4000; ++i) {
-    const BlockOfClass at{static_cast<int>(random() % 21), static_cast<int>(random() % 13),
-                          static_cast<std::uint8_t>(random() % 2)};
-    const ReadingCount reading{static_cast<std::uint8_t>(random() % 3),
-                               static_cast<std::uint8_t>(random() % 5),
-                               static_cast<std::uint16_t>(1 + random() % 2)};
-    bricks.at(at);
-    bricks.count(at, reading);
-    plain[{at.column, at.row, at.terrain_class}][{reading.kind, reading.step}] += reading.count;
+  std::uniform_real_distribution<double> value(-0.5, 0.5);
+  std::vector<SourceReadings> all(200);
+  for (SourceReadings& one : all) {
+    one.addPull({value(random), 0.05 + 0.1 * std::abs(value(random))}, 0.02 + 0.1 * std::abs(value(random)));
+    one.addSinkage(std::abs(value(random)));
   }
-  std::size_t all = 0;
-  for (int row = -1; row <= 13; ++row)
-    for (int column = -1; column <= 21; ++column) {
-      for (const std::uint8_t number : {std::uint8_t{0}, std::uint8_t{1}}) {
-        const auto expected = plain.find({column, row, number});
-        ASSERT_EQ(bricks.find({column, row, number}) != nullptr, expected != plain.end());
-        EXPECT_EQ(tableOf(bricks.counts({column, row, number})),
-                  expected == plain.end() ? Readings{} : expected->second);
-      }
-    }
-  bricks.visitAll([&](const BlockOfClass&, const BlockEvidence&) { ++all; });
-  EXPECT_EQ(all, plain.size());
-  // The box extends beyond the map on three sides.
-  std::size_t inside = 0, visited = 0;
-  for (const auto& [key, heard] : plain) inside += std::get<0>(key) <= 11 && std::get<1>(key) >= 5;
-  bricks.visit({-4, 5, 11, 40}, [&](const BlockOfClass& at, const BlockEvidence&) {
-    ++visited;
-    EXPECT_TRUE(plain.contains({at.column, at.row, at.terrain_class}));
-  });
-  EXPECT_EQ(visited, inside);
-  EXPECT_GT(inside, 20U);
-}
-
-// Property: a counter at its maximum stays at its maximum.
-TEST(EvidenceBricks, CountsSaturate) {
-  EvidenceBricks bricks(8, 8);
-  bricks.at({1, 1});
-  for (int i = 0; i < 3; ++i) bricks.count({1, 1}, {0, 7, 30000});
-  ASSERT_EQ(bricks.counts({1, 1}).size(), 1U);
-  EXPECT_EQ(bricks.counts({1, 1})[0].count, 65535);
+  const auto sums = [](const SourceReadings& r) {
+    return std::tuple(r.weight, r.pull, r.shared, r.sinkages, r.sinkage);
+  };
+  SourceReadings half, taken;
+  for (std::size_t i = 0; i < all.size(); i += 2) half.add(all[i], 1);
+  std::ranges::shuffle(all, random);
+  for (const SourceReadings& one : all) taken.add(one, 1);
+  SourceReadings rest = taken;
+  rest.add(half, -1);
+  rest.add(half, 1);
+  EXPECT_EQ(sums(rest), sums(taken));
+  for (const SourceReadings& one : all) taken.add(one, -1);
+  EXPECT_TRUE(taken.empty());
+  BlockEvidence block;
+  for (const GroundBound& bound : {GroundBound{-0.1, 0.6}, GroundBound{-0.3, 0.8}, GroundBound{0.05, 0.55}})
+    block.sources[{0, Trust::Once}].bound.join(bound);
+  EXPECT_EQ(block.bound().most_pull, -0.3);
+  EXPECT_EQ(block.bound().least_sinkage, 0.8);
 }
 
 constexpr Variation kVariation{.pull_std = 0.05, .sinkage_std = 0.1, .correlation_length_m = 4.0};
