@@ -134,6 +134,7 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
                                                                     const Moment& moment,
                                                                     const DriveVerdict& verdict) {
   transferred_ += moment.transferred ? moment.readings.size() : 0;
+  const std::vector<bool> jump = jumps(rows, moment);
   std::vector<Result> all;
   std::vector<std::size_t> sound_at;
   Sound sound;
@@ -146,8 +147,15 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
       continue;
     }
     const ClassReading read{*index, result.reading};
-    const GroundBound here = danger_.bound(*index, result.reading, rows.leastGradient(moment.rows[w]));
+    GroundBound here = danger_.bound(*index, result.reading, rows.leastGradient(moment.rows[w]));
+    const auto alone = jump[w] ? observer_.observe({read}).front() : std::nullopt;
+    if (alone && alone->pull.value < map_.model().prior(*index).pull.value)
+      here.lower(kept(alone->pull.value));
     if (here.any()) result.observation = boundOf(result.reading, here);
+    if (jump[w]) {
+      result.reason = "the slip of this wheel jumps: it bounds its place alone";
+      continue;
+    }
     sound.read.push_back(read);
     sound.row.push_back(moment.rows[w]);
     sound.danger.push_back(here.any());
@@ -178,6 +186,22 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
     }
   }
   return all;
+}
+
+std::vector<bool> TelemetryProcessor::jumps(const TelemetryRows& rows, const Moment& moment) {
+  constexpr double kJump = 0.3;
+  constexpr std::size_t kLast = 5;
+  std::vector<bool> jumps;
+  for (std::size_t w = 0; w < moment.readings.size(); ++w) {
+    std::deque<double>& last = slips_[rows.series(moment.rows[w])];
+    const double slip = moment.readings[w].slip, before = median({last.begin(), last.end()});
+    jumps.push_back(last.size() == kLast && std::abs(slip - before) > kJump);
+    last.push_back(slip);
+    if (last.size() > kLast) last.pop_front();
+  }
+  if (std::ranges::count(jumps, true) > 1 && std::ranges::count(jumps, false) == 0)
+    jumps.assign(jumps.size(), false);
+  return jumps;
 }
 
 std::optional<WheelObservation> TelemetryProcessor::rejected(const TelemetryRows& rows,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
@@ -67,7 +68,9 @@ WheelObservation boundAlone(const WheelObservation& observation);
 /// Keeps a reference to the map.
 ///
 /// Each channel of each reading is first checked for danger separately (DangerWatch). A dangerous reading
-/// bounds the ground at its place, even if the reading is rejected.
+/// bounds the ground at its place, even if the reading is rejected. If the slip of some wheels alone departs by more
+/// than 0.3 from the median of their last five, it bounds the ground under these wheels and tells nothing of other
+/// ground: they are on the edge of another soil.
 ///
 /// Slips and gradients are corrected by DrivePosterior before observations are computed. Where the slip does
 /// not depend on the ground, or the pose is displaced, a moment contains bounds alone. Before the first
@@ -116,6 +119,7 @@ class TelemetryProcessor {
     std::vector<double> second;  // second slips
   };
 
+  std::vector<bool> jumps(const TelemetryRows& rows, const Moment& moment);
   std::optional<WheelObservation> ofUnobserved(const TelemetryReading& reading, double least_gradient) const;
   void take(const TelemetryRows& rows, const Sound& sound);
   void follow();
@@ -130,6 +134,7 @@ class TelemetryProcessor {
   std::size_t next_fit_ = 0;  // number of moments at which the fit is repeated
   WheelObserver observer_;
   std::size_t transferred_ = 0, others_ = 0;
+  std::map<std::string, std::deque<double>> slips_{};  // last slips of each wheel
 };
 
 }  // namespace talus::costmap
