@@ -110,8 +110,7 @@ std::shared_ptr<const TravelCost> costWithout(Constraint constraint, const Trave
   std::vector<TravelCurve> curves = cost.curves();
   for (std::size_t k = 0; k < curves.size(); ++k) {
     TravelCurve& curve = curves[k];
-    if (constraint == Constraint::Pitch)
-      curve = withoutPitch(curve, limits.max_along, soilHoldsTo(cost, k));
+    if (constraint == Constraint::Pitch) curve = withoutPitch(curve, limits.max_along, soilHoldsTo(cost, k));
     if (constraint == Constraint::Roll) curve = withoutRoll(curve, limits.max_across);
     if (constraint == Constraint::Soil) curve = withoutSoil(limits);
     if (constraint == Constraint::Slope) curve = withoutSoil({.stance = limits.stance});
