@@ -381,7 +381,7 @@ class TravelCost {
 namespace talus::costmap {
 
 /// Steady motion of a rover at one pair of gradients, over the strength of the ground
-/// (terramech::SlopeEquilibrium). The strengths of the entries exceed the least strength that holds by excess(k).
+/// (terramech::SlopeEquilibrium). The strengths of the entries exceed the least strength that holds by kExcess.
 struct StrengthColumn {
   static constexpr int kStrengths = 12;
   static constexpr double kSpan = 3.0;  ///< excess of the last entry [-]
@@ -399,13 +399,25 @@ struct StrengthColumn {
   /// greatest value, slip angle [rad] (negative where the ground rises to the left), side force over load.
   std::array<std::array<float, kStrengths>, kQuantities> entries{};
 
-  /// Returns the excess over `least` of an entry: kSpan (k/11)^2.
-  static constexpr double excess(int k) noexcept {
-    const double share = static_cast<double>(k) / (kStrengths - 1);
-    return kSpan * share * share;
+  /// Excess over `least` of the entries: kSpan (k/11)^2.
+  static constexpr std::array<double, kStrengths> kExcess = [] {
+    std::array<double, kStrengths> excess{};
+    for (int k = 0; k < kStrengths; ++k)
+      excess[static_cast<std::size_t>(k)] = kSpan * k * k / ((kStrengths - 1) * (kStrengths - 1));
+    return excess;
+  }();
+  /// Entries around an excess over `least`, and the share of the second.
+  struct Place {
+    std::size_t low;
+    double share;
+  };
+  static Place place(double excess) noexcept;
+  /// Returns a quantity at a place: linear between entries, constant beyond.
+  double at(Quantity quantity, const Place& place) const noexcept {
+    const auto& values = entries[static_cast<std::size_t>(quantity)];
+    const auto a = static_cast<double>(values[place.low]), b = static_cast<double>(values[place.low + 1]);
+    return a + place.share * (b - a);
   }
-  /// Returns a quantity at an excess over `least`: linear between entries, constant beyond.
-  double at(Quantity quantity, double excess) const noexcept;
 };
 
 /// Lattice T[strength][gradient along][gradient across] of the steady motion of one rover on the ground of one

@@ -41,15 +41,14 @@ StrengthColumn solvedOnSide(const Standings& rover, const Gradient& gradient, do
   column.margin_rad =
       static_cast<float>(rover.in_ruts.at(gradient, std::max(1.0, least)).stability_margin_rad);
   SlopeState s{.energy_J_per_m = kNever, .speed_mps = 1.0 / kNever};
-  for (int k = 0; k < StrengthColumn::kStrengths; ++k) {
+  for (std::size_t k = 0; k < StrengthColumn::kExcess.size(); ++k) {
     // Where Newton's method fails, the state of the weaker ground stays.
-    const SlopeState next = rover.in_ruts.at(gradient, least + StrengthColumn::excess(k));
+    const SlopeState next = rover.in_ruts.at(gradient, least + StrengthColumn::kExcess[k]);
     if (next.speed_mps > 0.0) s = next;
     const std::array<double, StrengthColumn::kQuantities> values{
         s.energy_J_per_m, 1.0 / s.speed_mps,     s.slip, s.sinkage_m, s.torque_Nm,
         s.slip_angle_rad, s.side_force_over_load};
-    for (std::size_t q = 0; q < values.size(); ++q)
-      column.entries[q][static_cast<std::size_t>(k)] = static_cast<float>(values[q]);
+    for (std::size_t q = 0; q < values.size(); ++q) column.entries[q][k] = static_cast<float>(values[q]);
   }
   return column;
 }
@@ -85,15 +84,10 @@ StrengthColumn mixed(const StrengthColumn& a, const StrengthColumn& b, float sha
 
 }  // namespace
 
-double StrengthColumn::at(Quantity quantity, double excess) const noexcept {
-  const auto& values = entries[static_cast<std::size_t>(quantity)];
-  const double place = std::sqrt(std::clamp(excess, 0.0, kSpan) / kSpan) * (kStrengths - 1);
-  const int k = std::min(static_cast<int>(place), kStrengths - 2);
-  const double low = StrengthColumn::excess(k), high = StrengthColumn::excess(k + 1);
-  const double share = std::clamp((excess - low) / (high - low), 0.0, 1.0);
-  const auto i = static_cast<std::size_t>(k);
-  const auto a = static_cast<double>(values[i]), b = static_cast<double>(values[i + 1]);
-  return a + share * (b - a);
+StrengthColumn::Place StrengthColumn::place(double excess) noexcept {
+  const double at = std::sqrt(std::clamp(excess, 0.0, kSpan) / kSpan) * (kStrengths - 1);
+  const auto k = static_cast<std::size_t>(std::min(static_cast<int>(at), kStrengths - 2));
+  return {k, std::clamp((excess - kExcess[k]) / (kExcess[k + 1] - kExcess[k]), 0.0, 1.0)};
 }
 
 SlopeLattice::SlopeLattice(const SlopeEquilibrium& equilibrium, const TravelCost::Limits& limits,

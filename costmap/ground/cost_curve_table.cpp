@@ -61,14 +61,19 @@ RankedCategory judged(const GroundModel& model, const GroundBelief& belief, cons
   return {Category::Dangerous, isOfSoil(state.refusal) ? static_cast<double>(state.weak) : 1.0};
 }
 
-CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belief, const GroundCost& ground) {
-  TravelCost::Limits limits = model.limits();
+CategoryTable::CategoryTable(std::shared_ptr<const GroundModel> model, const GroundBelief& belief,
+                             GroundCost ground)
+    : model_(std::move(model)), belief_(belief), ground_(std::move(ground)) {}
+
+std::vector<CategoryTable::Entry> CategoryTable::tabulated() const {
+  TravelCost::Limits limits = model_->limits();
   limits.stance.reset();  // only TravelCost::tips() needs the stance
-  const TravelCost cost(limits, std::vector{ground});
+  const TravelCost cost(limits, std::vector{ground_});
   const auto judgedAt = [&](int step) {
     const CellCode plane({.dz_dx = step * CellCode::kStep, .dz_dy = 0.0, .curve = 0});
     const Direction worst = worstHeading(cost, plane);
-    return judged(model, belief, cost.detail(plane, worst), ground.states->steepest(step * CellCode::kStep));
+    return judged(*model_, belief_, cost.detail(plane, worst),
+                  ground_.states->steepest(step * CellCode::kStep));
   };
   // Categories are monotone in the gradient.
   int refused = 0;
@@ -80,14 +85,16 @@ CategoryTable::CategoryTable(const GroundModel& model, const GroundBelief& belie
       end = middle;
   }
   const Entry dangerous = entryOf(judgedAt(refused));
+  std::vector<Entry> entries;
   for (int step = 0; step < kSteps; ++step) {
-    const RankedCategory here = model.category(belief, ground.states->steepest(step * CellCode::kStep));
-    entries_.push_back(step >= refused && here.category < Category::Dangerous ? dangerous : entryOf(here));
+    const RankedCategory here = model_->category(belief_, ground_.states->steepest(step * CellCode::kStep));
+    entries.push_back(step >= refused && here.category < Category::Dangerous ? dangerous : entryOf(here));
   }
+  return entries;
 }
 
-CategoryTable::Entry CategoryTable::at(CellCode cell) const noexcept {
-  if (entries_.empty()) return {static_cast<std::uint8_t>(Category::Dangerous), 16};
+CategoryTable::Entry CategoryTable::at(CellCode cell) const {
+  std::call_once(once_, [this] { entries_ = tabulated(); });
   const auto x = static_cast<float>(cell.stepsX()), y = static_cast<float>(cell.stepsY());
   return entries_[static_cast<std::size_t>(std::ceil(std::sqrt(x * x + y * y)))];
 }
@@ -138,7 +145,7 @@ CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model
     throw std::invalid_argument("cost curves: " + std::to_string(classes()) +
                                 " classes of ground, must be <= " + std::to_string(kMost));
   for (int i = 0; i < static_cast<int>(classes()); ++i) priors_.push_back(model_->prior(i));
-  for (const GroundBelief& prior : priors_) curves_.push_back({refused(), prior, {}});
+  for (const GroundBelief& prior : priors_) curves_.push_back(curve(refused(), prior));
   priced_.assign(classes(), false);
   price(0);
 }
@@ -146,8 +153,7 @@ CostCurveTable::CostCurveTable(std::shared_ptr<const GroundModel> model) : model
 void CostCurveTable::price(std::size_t class_index) {
   priced_[class_index] = true;
   const GroundBelief& prior = priors_[class_index];
-  const GroundCost ground = model_->ground(static_cast<int>(class_index), prior);
-  curves_[class_index] = {ground, prior, CategoryTable(*model_, prior, ground)};
+  curves_[class_index] = curve(model_->ground(static_cast<int>(class_index), prior), prior);
   cost_.reset();
 }
 
@@ -169,8 +175,7 @@ CellCode::Curve CostCurveTable::learned(int class_index, const GroundBelief& bel
   const std::tuple key(class_index, other_class, worst.pull.value, worst.pull.std, worst.sinkage.value);
   if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
   if (curves_.size() >= kMost) return CellCode::kBlocked;
-  const GroundCost ground = model_->ground(class_index, worst, other_class);
-  return numbers_[key] = added({ground, worst, CategoryTable(*model_, worst, ground)});
+  return numbers_[key] = added(curve(model_->ground(class_index, worst, other_class), worst));
 }
 
 CostCurveTable::Curve CostCurveTable::dearer(Curve curve, double added_J_per_m) const {

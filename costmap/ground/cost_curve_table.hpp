@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -34,17 +35,21 @@ class CategoryTable {
     std::uint8_t confidence;
   };
 
-  /// Makes a table with the category dangerous at every gradient.
-  CategoryTable() = default;
   /// Makes the table of ground with the estimate `belief`; `ground` is the result of GroundModel::ground()
-  /// for it.
-  CategoryTable(const GroundModel& model, const GroundBelief& belief, const GroundCost& ground);
+  /// for it. It is computed at the first call of at().
+  CategoryTable(std::shared_ptr<const GroundModel> model, const GroundBelief& belief, GroundCost ground);
 
-  /// Returns the entry for the gradient of a cell.
-  Entry at(CellCode cell) const noexcept;
+  /// Returns the entry for the gradient of a cell. Thread-safe.
+  Entry at(CellCode cell) const;
 
  private:
-  std::vector<Entry> entries_;
+  std::vector<Entry> tabulated() const;
+
+  std::shared_ptr<const GroundModel> model_;
+  GroundBelief belief_;
+  GroundCost ground_;
+  mutable std::once_flag once_;
+  mutable std::vector<Entry> entries_;
 };
 
 /// Returns an estimate of the strength of ground of a class, rounded so that similar estimates share one cost
@@ -100,7 +105,7 @@ class CostCurveTable {
   const GroundBelief& belief(CellCode::Curve number) const { return curves_[number].belief; }
   /// Returns the categories of the ground with a curve index, tabulated over the gradient of the plane of a
   /// cell.
-  const CategoryTable& categories(CellCode::Curve number) const { return curves_[number].categories; }
+  const CategoryTable& categories(CellCode::Curve number) const { return *curves_[number].categories; }
 
   /// Returns the cost function with the curves of all assigned indices. Calls return the same object until a
   /// curve is added.
@@ -110,8 +115,11 @@ class CostCurveTable {
   struct Curve {
     GroundCost ground;
     GroundBelief belief;
-    CategoryTable categories;
+    std::shared_ptr<const CategoryTable> categories;
   };
+  Curve curve(const GroundCost& ground, const GroundBelief& belief) const {
+    return {ground, belief, std::make_shared<const CategoryTable>(model_, belief, ground)};
+  }
   Curve dearer(Curve curve, double added_J_per_m) const;
   SoilUncertainty uncertainty() const;
   void price(std::size_t class_index);

@@ -84,9 +84,8 @@ class GroundStates final : public TravelStates {
     TravelState state;
     std::array<double, 3> terms;  // of the cost
   };
-  class WeightTable;
-  Node node(int row, int bin, const std::vector<WeightTable>* weights = nullptr) const;
-  Node node(const StrengthOfClass& of, const WeightTable* weights, int row, int bin) const;
+  Node node(int row, int bin) const;
+  Node node(const StrengthOfClass& of, int row, int bin) const;
   std::vector<Terms> terms() const override;
   bool isAllowed(std::size_t node) const;
   int rows() const noexcept;

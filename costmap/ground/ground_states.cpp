@@ -40,82 +40,58 @@ constexpr int kStrengths = StrengthColumn::kStrengths;
 constexpr float kRefused = std::numeric_limits<float>::infinity();
 constexpr double kUpright_rad = 2e-4;  // interpolation error bound of the stability margin
 
-// Weights of the entries of a column, and of failure, for a normal excess of the strength over the least that
-// holds.
-struct StrengthWeights {
-  std::array<double, kStrengths> of{};
-  double fails = 0.0;
-};
+// Integral of the normal distribution up to t, and integral of that, t P(t) + p(t): linear between nodes, with an error
+// below 1e-6.
+struct NormalIntegrals {
+  double probability, excess;
 
-StrengthWeights weightsOf(double excess, double std) {
-  StrengthWeights w;
-  if (!(std > 1e-6)) {
-    w.fails = excess < 0.0 ? 1.0 : 0.0;
-    if (excess < 0.0) return w;
-    int k = 0;
-    while (k + 2 < kStrengths && StrengthColumn::excess(k + 1) <= excess) ++k;
-    const double low = StrengthColumn::excess(k), high = StrengthColumn::excess(k + 1),
-                 share = std::min((excess - low) / (high - low), 1.0);
-    w.of[static_cast<std::size_t>(k)] = 1.0 - share;
-    w.of[static_cast<std::size_t>(k) + 1] = share;
-    return w;
-  }
-  const auto at = [&](int k) { return (StrengthColumn::excess(k) - excess) / std; };
-  double below = terramech::normalProbability(at(0)), density = terramech::normalDensity(at(0));
-  w.fails = below;
-  for (int k = 0; k + 1 < kStrengths; ++k) {
-    const double next = terramech::normalProbability(at(k + 1)),
-                 next_density = terramech::normalDensity(at(k + 1));
-    const double low = StrengthColumn::excess(k), step = StrengthColumn::excess(k + 1) - low;
-    const double mass = next - below, moment = (excess - low) * mass - std * (next_density - density);
-    const double share = std::clamp(moment / step, 0.0, std::max(mass, 0.0));
-    w.of[static_cast<std::size_t>(k)] += mass - share;
-    w.of[static_cast<std::size_t>(k) + 1] += share;
-    below = next;
-    density = next_density;
-  }
-  w.of.back() += 1.0 - below;
-  return w;
-}
-
-}  // namespace
-
-// weightsOf() for one standard deviation, tabulated over the excess.
-class GroundStates::WeightTable {
- public:
-  explicit WeightTable(double std) : std_(std) {
-    for (int k = 0; k <= kSteps && std > kCertain; ++k) table_.push_back(weightsOf(k * kStep, std));
-  }
-
-  StrengthWeights at(double excess) const {
-    if (table_.empty() || excess < 0.0) return weightsOf(excess, std_);
-    const double place = std::min(excess / kStep, kSteps - 1e-9);
+  static NormalIntegrals at(double t) noexcept {
+    constexpr double kEnd = 8.0, kPerUnit = 256.0;
+    constexpr auto kNodes = static_cast<std::size_t>(2.0 * kEnd * kPerUnit) + 1;
+    static const std::vector<NormalIntegrals> nodes = [] {
+      std::vector<NormalIntegrals> all;
+      for (std::size_t k = 0; k < kNodes; ++k) {
+        const double x = static_cast<double>(k) / kPerUnit - kEnd, below = terramech::normalProbability(x);
+        all.push_back({below, x * below + terramech::normalDensity(x)});
+      }
+      return all;
+    }();
+    if (!(t > -kEnd)) return {0.0, 0.0};
+    if (!(t < kEnd)) return {1.0, t};
+    const double place = (t + kEnd) * kPerUnit;
     const auto k = static_cast<std::size_t>(place);
     const double share = place - static_cast<double>(k);
-    StrengthWeights w = table_[k];
-    const StrengthWeights& next = table_[k + 1];
-    for (std::size_t i = 0; i < w.of.size(); ++i) w.of[i] += share * (next.of[i] - w.of[i]);
-    w.fails += share * (next.fails - w.fails);
-    return w;
+    const NormalIntegrals &a = nodes[k], &b = nodes[k + 1];
+    return {a.probability + share * (b.probability - a.probability),
+            a.excess + share * (b.excess - a.excess)};
   }
-
- private:
-  static constexpr int kSteps = 1024;
-  static constexpr double kStep = 4.0 / kSteps, kCertain = 0.005;
-  double std_;
-  std::vector<StrengthWeights> table_;
 };
 
-namespace {
+using Entries = Eigen::Array<float, kStrengths, 1>;
 
-double sum(const std::array<float, kStrengths>& entries, const StrengthWeights& w) noexcept {
-  double total = 0.0;
-  for (std::size_t k = 0; k < w.of.size(); ++k) total += w.of[k] * static_cast<double>(entries[k]);
-  return total;
-}
+// Probability that the motion holds, and weights of the entries of a column in the integral of a quantity over the
+// strengths that hold, for a normal excess of the strength over the least that holds. The quantity is linear between
+// entries; its integral is that of its steps of slope, (s - s_k)+ each.
+struct StrengthWeights {
+  Entries of;
+  double holds = 0.0;
+};
 
-double probabilityBelow(double bound, double std) {
-  return std > 1e-6 ? terramech::normalProbability(bound / std) : 0.0;
+StrengthWeights weightsOf(double excess, double std) noexcept {
+  constexpr auto& at = StrengthColumn::kExcess;
+  const double width = std::max(std, 1e-9), per_width = 1.0 / width;
+  NormalIntegrals here = NormalIntegrals::at(excess * per_width);
+  StrengthWeights w{.of = Entries::Zero(), .holds = here.probability};
+  double above = w.holds;
+  for (std::size_t k = 0; k + 1 < at.size(); ++k) {
+    const NormalIntegrals next = NormalIntegrals::at((excess - at[k + 1]) * per_width);
+    const double share = width / (at[k + 1] - at[k]) * (here.excess - next.excess);
+    w.of[static_cast<Eigen::Index>(k)] = static_cast<float>(above - share);
+    above = share;
+    here = next;
+  }
+  w.of[kStrengths - 1] = static_cast<float>(above);
+  return w;
 }
 
 }  // namespace
@@ -137,8 +113,7 @@ int GroundStates::rows() const noexcept {
   return rows;
 }
 
-GroundStates::Node GroundStates::node(const StrengthOfClass& of, const WeightTable* weights, int row,
-                                      int bin) const {
+GroundStates::Node GroundStates::node(const StrengthOfClass& of, int row, int bin) const {
   const TravelPolicy& policy = rules_->policy;
   Node out;
   TravelState& state = out.state;
@@ -150,15 +125,19 @@ GroundStates::Node GroundStates::node(const StrengthOfClass& of, const WeightTab
   }
   const StrengthColumn& column = of.lattice->node(row, bin);
   const double excess = of.strength.value - static_cast<double>(column.least);
-  const StrengthWeights w = weights ? weights->at(excess) : weightsOf(excess, of.strength.std);
-  const double holds = 1.0 - w.fails, reserve = of.strength.value - static_cast<double>(column.required);
-  const double weak = reserve < 0.0 ? 1.0 : probabilityBelow(-reserve, of.strength.std);
-  const double gradient = TravelCurve::gradient(bin), surface = std::hypot(1.0, gradient);
-  const auto at = [&](StrengthColumn::Quantity quantity) { return column.at(quantity, excess); };
+  const StrengthWeights w = weightsOf(excess, of.strength.std);
+  const double reserve = of.strength.value - static_cast<double>(column.required);
+  const double weak =
+      reserve < 0.0 ? 1.0 : NormalIntegrals::at(-reserve / std::max(of.strength.std, 1e-9)).probability;
+  const double gradient = TravelCurve::gradient(bin), surface = std::sqrt(1.0 + gradient * gradient);
+  const StrengthColumn::Place place = StrengthColumn::place(excess);
+  const auto at = [&](StrengthColumn::Quantity quantity) { return column.at(quantity, place); };
   const auto expected = [&](StrengthColumn::Quantity quantity) {
     const auto& entries = column.entries[static_cast<std::size_t>(quantity)];
-    const double all = sum(entries, w), limit = static_cast<double>(entries.front());
-    return std::pair(surface * (holds > 1e-9 ? all / holds : limit), surface * (all + 2.0 * w.fails * limit));
+    const auto all = static_cast<double>((w.of * Eigen::Map<const Entries>(entries.data())).sum()),
+               limit = static_cast<double>(entries.front());
+    return std::pair(surface * (w.holds > 1e-9 ? all / w.holds : limit),
+                     surface * (all + 2.0 * (1.0 - w.holds) * limit));
   };
   const auto [energy_J, energy_cost_J] = expected(StrengthColumn::kEnergy);
   const auto [time_s, time_cost_s] = expected(StrengthColumn::kTime);
@@ -197,13 +176,10 @@ GroundStates::Node GroundStates::node(const StrengthOfClass& of, const WeightTab
   return out;
 }
 
-GroundStates::Node GroundStates::node(int row, int bin, const std::vector<WeightTable>* weights) const {
-  const auto of = [&](std::size_t k) {
-    return node(classes_[k], weights ? &(*weights)[k] : nullptr, row, bin);
-  };
-  Node out = of(0);
+GroundStates::Node GroundStates::node(int row, int bin) const {
+  Node out = node(classes_.front(), row, bin);
   for (std::size_t k = 1; k < classes_.size(); ++k) {
-    const Node other = of(k);
+    const Node other = node(classes_[k], row, bin);
     out.state = worse(out.state, other.state);
     for (std::size_t t = 0; t < out.terms.size(); ++t) out.terms[t] = std::max(out.terms[t], other.terms[t]);
   }
@@ -213,15 +189,13 @@ GroundStates::Node GroundStates::node(int row, int bin, const std::vector<Weight
 // Returns the terms of all nodes, raised from row to row.
 std::vector<TravelStates::Terms> GroundStates::terms() const {
   const int all = rows();
-  std::vector<WeightTable> weights;
-  for (const StrengthOfClass& of : classes_) weights.emplace_back(of.strength.std);
   std::vector<Terms> terms(static_cast<std::size_t>(all * TravelCurve::kBins),
                            {kRefused, kRefused, kRefused});
   for (int row = 0; row < all; ++row)
     for (int bin = 0; bin < TravelCurve::kBins; ++bin) {
       const auto i = static_cast<std::size_t>(row * TravelCurve::kBins + bin);
       if (row > 0 && !(terms[i - TravelCurve::kBins][0] < kRefused)) continue;
-      const Node here = node(row, bin, &weights);
+      const Node here = node(row, bin);
       if (here.state.refusal != Refusal::None) continue;
       for (std::size_t k = 0; k < 3; ++k)
         terms[i][k] =
@@ -270,10 +244,11 @@ TravelForecast GroundStates::forecast(const terramech::Gradient& gradient) const
     out.fresh_energy += weight * static_cast<double>(column.fresh_energy);
     out.fresh_time += weight * static_cast<double>(column.fresh_time);
     for (int d = 0; d < TravelForecast::kDeviates; ++d) {
-      const double excess = reserve + TravelForecast::deviate(d) * of.strength.std;
+      const StrengthColumn::Place place =
+          StrengthColumn::place(reserve + TravelForecast::deviate(d) * of.strength.std);
       const auto k = static_cast<std::size_t>(d);
-      out.energy_J_per_m[k] += static_cast<float>(scale * column.at(StrengthColumn::kEnergy, excess));
-      out.time_s_per_m[k] += static_cast<float>(scale * column.at(StrengthColumn::kTime, excess));
+      out.energy_J_per_m[k] += static_cast<float>(scale * column.at(StrengthColumn::kEnergy, place));
+      out.time_s_per_m[k] += static_cast<float>(scale * column.at(StrengthColumn::kTime, place));
     }
   });
   return out;

@@ -114,15 +114,15 @@ TEST(WheelSwath, PullIsTheMinimumOverPositionsAndHeadings) {
   EXPECT_LT(missed / standings, 0.01);
 }
 
-CategoryTable tableOf(const GroundModel& model) {
-  return {model, model.prior(0), model.ground(0, model.prior(0))};
+CategoryTable tableOf(const std::shared_ptr<const GroundModel>& model) {
+  return {model, model->prior(0), model->ground(0, model->prior(0))};
 }
 
 // Property: the category is that of the model in the steepest heading, or worse because of the planners'
 // rounding.
 TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
   const auto model = testGround();
-  const CategoryTable table = tableOf(*model);
+  const CategoryTable table = tableOf(model);
   std::mt19937 random(4);
   std::uniform_real_distribution<double> gradient(-0.5, 0.5);
   int same = 0;
@@ -146,7 +146,7 @@ TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
 // map shows as safe or marginal is not refused in its worst heading.
 TEST(CategoryTable, NoHeadingHasAWorseCategory) {
   const auto model = testGround();
-  const CategoryTable table = tableOf(*model);
+  const CategoryTable table = tableOf(model);
   const TravelCost cost(model->limits(), std::vector<GroundCost>{model->ground(0, model->prior(0))});
   for (double gradient = 0.01; gradient < 0.45; gradient += 0.0137)
     for (int k = 0; k < 48; ++k) {
@@ -162,7 +162,7 @@ TEST(CategoryTable, NoHeadingHasAWorseCategory) {
 
 TEST(CategoryTable, SteepestRepresentableGradientIsDangerous) {
   const auto model = testGround();
-  const CategoryTable table = tableOf(*model);
+  const CategoryTable table = tableOf(model);
   // Property: a gradient of 2.8 is dangerous.
   EXPECT_EQ(table.at(CellCode({-2.0, -2.0, 0})).category,
             static_cast<std::uint8_t>(terramech::Category::Dangerous));
