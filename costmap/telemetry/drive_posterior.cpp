@@ -23,10 +23,11 @@ constexpr double kNegligible = 1e-4;    // probability of a hypothesis by the fi
 constexpr double kMostSecondStd = 0.1;  // a second slip with a greater error is not used
 constexpr double kMostVariance = 1.0;   // greatest variance of a slip, where the curve is flat
 constexpr double kLeastShare = 0.02, kLeastSteepness = 0.05;
-constexpr std::array<double, 4> kVariations{0.0, 0.4, 0.8, 1.3};
+// Levels of the errors: share of the variation between places, and share of the errors of curve and gradient.
+constexpr std::array<double, 5> kVariations{0.0, 0.0, 0.4, 0.8, 1.3}, kNoises{0.3, 1.0, 1.0, 1.0, 1.0};
 // Errors of a slip that is computed from the class, and of one unrelated to the ground.
-constexpr std::array<double, 4> kComputedErrors{0.001, 0.003, 0.006, 0.01},
-    kUnrelatedErrors{0.01, 0.04, 0.12, 0.3};
+constexpr std::array<double, 5> kComputedErrors{0.001, 0.002, 0.003, 0.006, 0.01},
+    kUnrelatedErrors{0.01, 0.02, 0.04, 0.12, 0.3};
 // Resistances are a sum of normal distributions about nodes: positions over their deviation without that of one
 // node, and deviation of one node over that of all.
 constexpr std::array<double, 5> kResistances{-2.0, -1.0, 0.0, 1.0, 2.0};
@@ -155,7 +156,7 @@ Hypotheses hypotheses(double modulus_std, bool twice) {
   const auto onModuli = [&](int step, const auto& add) {
     for (int i = -kModuli; i <= kModuli; i += step) {
       const double off = kModulusStep * i;
-      add(std::exp(off * modulus_std),
+      add(std::exp((off - 0.5 * modulus_std) * modulus_std),
           step * kModulusStep * std::exp(-0.5 * off * off) / std::sqrt(2.0 * std::numbers::pi));
     }
   };
@@ -316,9 +317,10 @@ struct OfClass {
 
   // Variance of the slip at a place: ground that varies, curve and gradient.
   double variance(const Curve::Driven& driven, std::size_t t) const {
-    const double place = std::hypot(kVariations[t] * ground.pull_std, kModelError) * driven.share;
-    return std::min((place * place + kGradientNoise * kGradientNoise) * driven.by_pull * driven.by_pull,
-                    kMostVariance);
+    const double place =
+                     std::hypot(kVariations[t] * ground.pull_std, kNoises[t] * kModelError) * driven.share,
+                 gradient = kNoises[t] * kGradientNoise;
+    return std::min((place * place + gradient * gradient) * driven.by_pull * driven.by_pull, kMostVariance);
   }
 
   // Residuals of the first parts for one sensor. Where the slip was measured twice: given the second slip.

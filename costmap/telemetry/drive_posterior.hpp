@@ -88,13 +88,14 @@ struct DriveEstimate {
 /// P and H are means over the wheels of the rover, of which some run in ruts. A sensor (SlipSensor) with offset b
 /// reads b + read(m i) + a u + e1, a second slip b2 + m i + u + e2, where a is the change of the reading for a change of
 /// the slip, and
-///   var u = ((t^2 p^2 + 0.01^2) h^2 + 0.01^2) (di/dg)^2, var e1 = 0.015^2, var e2 = 0.03^2 + scatter^2   (B3)
-/// p is the standard deviation of the class between places, t its share in this drive, u the departure of a place,
-/// which both slips have. Each kind of sensor is one hypothesis with a prior probability; for each, D (normal,
-/// mean_std), m (log-normal, modulus_std), five values of R, t and the sensor's parameters are summed over a grid;
-/// b and R about these values (normal, linear in the slip) are integrated. Classes share the sensor and m. A square
-/// with sides of 2/3 of the correlation length counts as one reading. The pull that soils of a class have in ruts
-/// in addition (rut_std) is not seen in the slip; it adds to the standard deviation.
+///   var u = ((t^2 p^2 + e^2) h^2 + e^2) (di/dg)^2, var e1 = 0.015^2, var e2 = 0.03^2 + scatter^2          (B3)
+/// p is the standard deviation of the class between places, t its share in this drive, e the error of curve and
+/// gradient (0.01, or 0.003 where t is 0), u the departure of a place, which both slips have. Each kind of sensor
+/// is one hypothesis with a prior probability; for each, D (normal, mean_std), m (log-normal, mean 1, modulus_std),
+/// five values of R, t, e and the sensor's parameters are summed over a grid; b and R about these values (normal,
+/// linear in the slip) are integrated. Classes share the sensor and m. A square with sides of 2/3 of the
+/// correlation length counts as one reading. The pull that soils of a class have in ruts in addition (rut_std) is
+/// not seen in the slip; it adds to the standard deviation.
 ///
 /// Measured gradients are compared with those of the map, which gives the offset and scale of the slope sensor,
 /// and the part of the drive from which they are unrelated: there the pose is displaced. All numbers ours.
