@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include <talus/common/common.hpp>
 #include <talus/costmap/telemetry/telemetry_rows.hpp>
 #include <talus/terramech/contact/load_transfer.hpp>
 
@@ -179,8 +180,24 @@ TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const Traver
       width_(telemetry.find("wheel_width_m")),
       rate_(telemetry.find("wheel_rate_rad_s")),
       wheel_(telemetry.findWords("wheel")),
-      run_(telemetry.findWords("run")) {
+      run_(telemetry.findWords("run")),
+      order_(byTime()) {
   measureSecond(telemetry);
+}
+
+std::vector<std::size_t> TelemetryRows::byTime() const {
+  const auto at = [&](std::size_t i) { return std::isfinite(value(time_, i)) ? value(time_, i) : kInfinity; };
+  std::map<std::string, double> began;  // by run
+  for (std::size_t i = 0; i < size(); ++i) {
+    double& first = began.try_emplace(run(i), kInfinity).first->second;
+    first = std::min(first, at(i));
+  }
+  std::vector<std::tuple<double, std::string, double, std::size_t>> rows;
+  for (std::size_t i = 0; i < size(); ++i) rows.emplace_back(began[run(i)], time_ ? run(i) : "", at(i), i);
+  std::ranges::sort(rows);
+  std::vector<std::size_t> order;
+  for (const auto& row : rows) order.push_back(std::get<3>(row));
+  return order;
 }
 
 double TelemetryRows::rimSpeed(std::size_t i) const {
@@ -206,7 +223,7 @@ void TelemetryRows::measureSecond(const terramech::Telemetry& telemetry) {
   };
   second_.assign(size(), std::numeric_limits<double>::quiet_NaN());
   std::map<std::string, std::vector<std::size_t>> of_series;
-  for (std::size_t i = 0; i < size(); ++i) {
+  for (const std::size_t i : order_) {
     if (speed_) {
       compare(i, second_[i] = slipOf(value(speed_, i), rimSpeed(i)));
       continue;
@@ -307,17 +324,22 @@ std::vector<std::vector<std::size_t>> TelemetryRows::byMoment() const {
   std::vector<std::vector<std::size_t>> moments;
   const auto alone = [&](std::size_t i) { return !time_ || !wheel_ || !std::isfinite(value(time_, i)); };
   for (std::size_t first = 0; first < size();) {
+    const std::size_t row = order_[first];
     std::size_t end = first + 1;
-    while (!alone(first) && end < size() && value(time_, end) == value(time_, first)) ++end;
+    while (!alone(row) && end < size() && value(time_, order_[end]) == value(time_, row) &&
+           run(order_[end]) == run(row))
+      ++end;
     // The second row of a wheel at one time begins another moment.
-    std::map<std::pair<std::string, std::string>, std::size_t> read;
-    std::map<std::tuple<std::string, std::size_t, std::string>, std::size_t> sorted;
-    for (std::size_t i = first; i < end; ++i) sorted[{run(i), read[{run(i), wheel(i)}]++, wheel(i)}] = i;
-    auto before = sorted.end();
-    for (auto row = sorted.begin(); row != sorted.end(); before = row++) {
-      const auto of = [](const auto& r) { return std::pair(std::get<0>(r->first), std::get<1>(r->first)); };
-      if (before == sorted.end() || of(before) != of(row)) moments.emplace_back();
-      moments.back().push_back(row->second);
+    std::map<std::string, std::size_t> read;
+    std::map<std::pair<std::size_t, std::string>, std::size_t> sorted;
+    for (std::size_t k = first; k < end; ++k) {
+      const std::string of = wheel(order_[k]);
+      sorted[{read[of]++, of}] = order_[k];
+    }
+    for (std::size_t before = read.size(); const auto& [of, i] : sorted) {
+      if (before != of.first) moments.emplace_back();
+      moments.back().push_back(i);
+      before = of.first;
     }
     first = end;
   }

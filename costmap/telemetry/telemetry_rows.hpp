@@ -86,12 +86,14 @@ class TelemetryRows {
   double secondStd() const noexcept { return second_std_; }
   static constexpr double kSecondWay_m = 2.0;
 
-  /// Returns the indices of all rows, grouped by moment. A moment is the rows of different wheels at one time
-  /// of one run. The order of rows within a moment, and of interleaved runs, affects only the indices.
+  /// Returns the indices of all rows, grouped by moment, in the order of time. A moment is the rows of different
+  /// wheels at one time of one run, wherever they are in the file.
   std::vector<std::vector<std::size_t>> byMoment() const;
 
  private:
   static double value(const std::vector<double>* column, std::size_t i);
+  // Returns the rows of each run by time, runs by their first time; rows without time are last, as in the file.
+  std::vector<std::size_t> byTime() const;
   double mapGradient(const TelemetryReading& reading, double direction_rad) const;
   double measuredSlope(std::size_t i) const;
   double rimSpeed(std::size_t i) const;
@@ -104,6 +106,7 @@ class TelemetryRows {
   const std::vector<double>*speed_, *rim_speed_, *roll_, *slip_angle_, *radius_, *width_;
   const std::vector<double>* rate_;
   const std::vector<std::string>*wheel_, *run_;
+  std::vector<std::size_t> order_;
   std::vector<double> second_;
   double second_std_ = 0.0;
 };
