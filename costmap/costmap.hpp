@@ -136,13 +136,6 @@ struct CategoryCounts {
   std::size_t safe = 0, marginal = 0, dangerous = 0, unknown = 0;
 };
 
-/// Category of a cell and the probability of the category.
-struct CellCategory {
-  std::uint8_t category = 0;  ///< terramech::Category as a number
-  /// Probability in steps of 1/16, rounded to nearest if dangerous and down otherwise.
-  std::uint8_t confidence = 0;
-};
-
 /// The published cost grid of a map, and the changes since its newest version. published() may be called from
 /// any thread at any time; other const members may be called while no thread changes the map. Only the map
 /// calls non-const members.

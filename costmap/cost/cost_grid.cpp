@@ -267,21 +267,17 @@ const char* toText(Refusal refusal) noexcept {
 }
 
 TravelState worse(const TravelState& a, const TravelState& b) noexcept {
-  const auto farther = [](float x, float y) { return std::abs(x) < std::abs(y) ? y : x; };
-  return {.slip = farther(a.slip, b.slip),
-          .sinkage_m = std::max(a.sinkage_m, b.sinkage_m),
-          .torque_Nm = farther(a.torque_Nm, b.torque_Nm),
-          .energy_J_per_m = std::max(a.energy_J_per_m, b.energy_J_per_m),
-          .time_s_per_m = std::max(a.time_s_per_m, b.time_s_per_m),
-          .risk_per_m = std::max(a.risk_per_m, b.risk_per_m),
-          .weak = std::max(a.weak, b.weak),
-          .pull_margin = std::min(a.pull_margin, b.pull_margin),
-          .slip_angle_rad = a.slip_angle_rad,
-          .side_force_over_load = a.side_force_over_load,
-          .stability_margin_rad = a.stability_margin_rad,
-          .category = std::max(a.category, b.category),
-          .refusal = a.refusal != Refusal::None ? a.refusal : b.refusal,
-          .class_index = a.class_index};
+  TravelState out = a;
+  for (float TravelState::*const of : {&TravelState::slip, &TravelState::torque_Nm})
+    if (std::abs(a.*of) < std::abs(b.*of)) out.*of = b.*of;
+  for (float TravelState::*const of :
+       {&TravelState::sinkage_m, &TravelState::energy_J_per_m, &TravelState::time_s_per_m,
+        &TravelState::risk_per_m, &TravelState::weak})
+    out.*of = std::max(a.*of, b.*of);
+  out.pull_margin = std::min(a.pull_margin, b.pull_margin);
+  out.category = std::max(a.category, b.category);
+  if (a.refusal == Refusal::None) out.refusal = b.refusal;
+  return out;
 }
 
 TravelState TravelStates::state(const terramech::Gradient& gradient) const {

@@ -95,8 +95,7 @@ struct WheelObservation {
   double shared_std = 0.0;
   /// Thrust of the terrain class at the measured slip over its thrust at the reference slip [-].
   double share = 1.0;
-  double pose_std_m = 0.0;  ///< position uncertainty, one standard deviation
-  bool bound = false;       ///< true if the rover may have been stationary: `pull` is then an upper bound
+  double pose_std_m = 0.0;          ///< position uncertainty, one standard deviation
   Trust trust = Trust::Unverified;  ///< how the sensors of `pull` were verified
   bool sinkage_verified = false;    ///< true if the sensors of the sinkage are verified
   /// Number of the drive (driveTag()), because the sensors of each drive have their own errors.

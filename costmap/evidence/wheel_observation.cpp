@@ -198,8 +198,7 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
                        .place = reading.place,
                        .pull = {},
                        .sinkage = {},
-                       .pose_std_m = reading.pose_std_m,
-                       .bound = balance.standing && !known(reading.drawbar_pull_N)};
+                       .pose_std_m = reading.pose_std_m};
   const GroundBelief prior = model_.prior(w.read.class_index);
   Estimate seen = w.by_torque;
   if (by_balance) {
@@ -210,7 +209,8 @@ std::optional<WheelObservation> WheelObserver::observed(const Wheel& w, const Ba
                    {.departure = reading.drawbar_pull_N / reading.load_N - w.expected.drawbar_pull_over_load,
                     .share = std::max(w.share, kLeastShare)},
                    0.0);
-  if (out.bound) seen = upperBound(w, balance);
+  else if (balance.standing)
+    seen = upperBound(w, balance);
   if (!known(seen.std)) return std::nullopt;
   const double rut = kRutRelativeStd * w.rut_gain;
   out.pull = {prior.pull.value + seen.value, std::hypot(seen.std, rut)};

@@ -24,7 +24,7 @@ bool isOfSoil(Refusal refusal) {
   return refusal == Refusal::Pull || refusal == Refusal::SideForce;
 }
 
-CategoryTable::Entry entryOf(const RankedCategory& ranked) {
+CellCategory entryOf(const RankedCategory& ranked) {
   // Rounded to the nearest step for dangerous ground, else down: the probability of better ground is never
   // overstated.
   const double steps = 16.0 * ranked.probability;
@@ -65,7 +65,7 @@ CategoryTable::CategoryTable(std::shared_ptr<const GroundModel> model, const Gro
                              GroundCost ground)
     : model_(std::move(model)), belief_(belief), ground_(std::move(ground)) {}
 
-std::vector<CategoryTable::Entry> CategoryTable::tabulated() const {
+std::vector<CellCategory> CategoryTable::tabulated() const {
   TravelCost::Limits limits = model_->limits();
   limits.stance.reset();  // only TravelCost::tips() needs the stance
   const TravelCost cost(limits, std::vector{ground_});
@@ -84,8 +84,8 @@ std::vector<CategoryTable::Entry> CategoryTable::tabulated() const {
     else
       end = middle;
   }
-  const Entry dangerous = entryOf(judgedAt(refused));
-  std::vector<Entry> entries;
+  const CellCategory dangerous = entryOf(judgedAt(refused));
+  std::vector<CellCategory> entries;
   for (int step = 0; step < kSteps; ++step) {
     const RankedCategory here = model_->category(belief_, ground_.states->steepest(step * CellCode::kStep));
     entries.push_back(step >= refused && here.category < Category::Dangerous ? dangerous : entryOf(here));
@@ -93,7 +93,7 @@ std::vector<CategoryTable::Entry> CategoryTable::tabulated() const {
   return entries;
 }
 
-CategoryTable::Entry CategoryTable::at(CellCode cell) const {
+CellCategory CategoryTable::at(CellCode cell) const {
   std::call_once(once_, [this] { entries_ = tabulated(); });
   const auto x = static_cast<float>(cell.stepsX()), y = static_cast<float>(cell.stepsY());
   return entries_[static_cast<std::size_t>(std::ceil(std::sqrt(x * x + y * y)))];

@@ -28,28 +28,21 @@ RankedCategory judged(const GroundModel& model, const GroundBelief& belief, cons
 /// gradient of a cell is rounded up to a step.
 class CategoryTable {
  public:
-  /// Table entry for one gradient.
-  struct Entry {
-    std::uint8_t category;  ///< terramech::Category as a number
-    /// Probability of the category in steps of 1/16, rounded to nearest if dangerous and down otherwise.
-    std::uint8_t confidence;
-  };
-
   /// Makes the table of ground with the estimate `belief`; `ground` is the result of GroundModel::ground()
   /// for it. It is computed at the first call of at().
   CategoryTable(std::shared_ptr<const GroundModel> model, const GroundBelief& belief, GroundCost ground);
 
   /// Returns the entry for the gradient of a cell. Thread-safe.
-  Entry at(CellCode cell) const;
+  CellCategory at(CellCode cell) const;
 
  private:
-  std::vector<Entry> tabulated() const;
+  std::vector<CellCategory> tabulated() const;
 
   std::shared_ptr<const GroundModel> model_;
   GroundBelief belief_;
   GroundCost ground_;
   mutable std::once_flag once_;
-  mutable std::vector<Entry> entries_;
+  mutable std::vector<CellCategory> entries_;
 };
 
 /// Returns an estimate of the strength of ground of a class, rounded so that similar estimates share one cost

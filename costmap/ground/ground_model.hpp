@@ -35,6 +35,13 @@ struct RankedCategory {
   double probability = 0.0;
 };
 
+/// Category of a cell and the probability of the category.
+struct CellCategory {
+  std::uint8_t category;  ///< terramech::Category as a number
+  /// Probability in steps of 1/16, rounded to nearest if dangerous and down otherwise.
+  std::uint8_t confidence;
+};
+
 /// Permissions, weights and limits of the rover by which ground is priced.
 struct GroundRules {
   TravelPolicy policy;

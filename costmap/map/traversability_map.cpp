@@ -325,8 +325,7 @@ std::optional<GroundBelief> MapCosts::ground(maps::Cell cell) const {
 std::optional<CellCategory> MapCosts::ranked(maps::Cell cell) const {
   const CellCode code = published()->at(cell);
   if (code.curve() >= CellCode::kUnknown) return std::nullopt;
-  const auto entry = curves_->table().categories(code.curve()).at(code);
-  return CellCategory{entry.category, entry.confidence};
+  return curves_->table().categories(code.curve()).at(code);
 }
 
 maps::Raster<std::uint8_t> MapCosts::categories() const {

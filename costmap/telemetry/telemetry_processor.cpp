@@ -122,7 +122,7 @@ GroundBound DangerWatch::bound(int class_index, const TelemetryReading& reading,
 WheelObservation boundAlone(const WheelObservation& observation) {
   WheelObservation left = observation;
   left.pull = left.sinkage = {kNone, kNone};
-  left.bound = left.sinkage_verified = false;
+  left.sinkage_verified = false;
   left.trust = Trust::Unverified;
   return left;
 }

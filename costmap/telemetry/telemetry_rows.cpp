@@ -186,14 +186,11 @@ TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const Traver
 }
 
 std::vector<std::size_t> TelemetryRows::byTime() const {
-  const auto at = [&](std::size_t i) { return std::isfinite(value(time_, i)) ? value(time_, i) : kInfinity; };
-  std::map<std::string, double> began;  // by run
+  std::vector<std::tuple<std::string, double, std::string, std::size_t>> rows;
   for (std::size_t i = 0; i < size(); ++i) {
-    double& first = began.try_emplace(run(i), kInfinity).first->second;
-    first = std::min(first, at(i));
+    const double time_s = std::isfinite(value(time_, i)) ? value(time_, i) : kInfinity;
+    rows.emplace_back(time_ ? run(i) : "", time_s, time_ ? wheel(i) : "", i);
   }
-  std::vector<std::tuple<double, std::string, double, std::size_t>> rows;
-  for (std::size_t i = 0; i < size(); ++i) rows.emplace_back(began[run(i)], time_ ? run(i) : "", at(i), i);
   std::ranges::sort(rows);
   std::vector<std::size_t> order;
   for (const auto& row : rows) order.push_back(std::get<3>(row));
@@ -322,26 +319,18 @@ double TelemetryRows::measuredSlope(std::size_t i) const {
 
 std::vector<std::vector<std::size_t>> TelemetryRows::byMoment() const {
   std::vector<std::vector<std::size_t>> moments;
-  const auto alone = [&](std::size_t i) { return !time_ || !wheel_ || !std::isfinite(value(time_, i)); };
-  for (std::size_t first = 0; first < size();) {
-    const std::size_t row = order_[first];
-    std::size_t end = first + 1;
-    while (!alone(row) && end < size() && value(time_, order_[end]) == value(time_, row) &&
-           run(order_[end]) == run(row))
-      ++end;
-    // The second row of a wheel at one time begins another moment.
-    std::map<std::string, std::size_t> read;
-    std::map<std::pair<std::size_t, std::string>, std::size_t> sorted;
-    for (std::size_t k = first; k < end; ++k) {
-      const std::string of = wheel(order_[k]);
-      sorted[{read[of]++, of}] = order_[k];
+  std::map<std::string, std::size_t>
+      read;  // rows of each wheel at one time; the second begins another moment
+  std::size_t first = 0, before = 0;
+  for (const std::size_t i : order_) {
+    const bool same = time_ && wheel_ && value(time_, i) == value(time_, before) && run(i) == run(before);
+    if (!same) {
+      read.clear();
+      first = moments.size();
     }
-    for (std::size_t before = read.size(); const auto& [of, i] : sorted) {
-      if (before != of.first) moments.emplace_back();
-      moments.back().push_back(i);
-      before = of.first;
-    }
-    first = end;
+    const std::size_t at = first + read[wheel(i)]++;
+    if (at == moments.size()) moments.emplace_back();
+    moments[at].push_back(before = i);
   }
   return moments;
 }

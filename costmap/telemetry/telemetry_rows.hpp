@@ -92,7 +92,7 @@ class TelemetryRows {
 
  private:
   static double value(const std::vector<double>* column, std::size_t i);
-  // Returns the rows of each run by time, runs by their first time; rows without time are last, as in the file.
+  // Returns the rows by run, time and wheel, those of a run without time last; as in the file without the column.
   std::vector<std::size_t> byTime() const;
   double mapGradient(const TelemetryReading& reading, double direction_rad) const;
   double measuredSlope(std::size_t i) const;

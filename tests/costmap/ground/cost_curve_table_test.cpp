@@ -131,7 +131,7 @@ TEST(CategoryTable, CategoryIsAtLeastThatOfTheWorstHeading) {
     const double steps = std::ceil(std::hypot(cell.stepsX(), cell.stepsY()));
     const double worst = model->lattice(0)->steepest(steps * CellCode::kStep);
     const RankedCategory expected = model->category(model->prior(0), worst);
-    const CategoryTable::Entry seen = table.at(cell);
+    const CellCategory seen = table.at(cell);
     ASSERT_GE(seen.category, static_cast<std::uint8_t>(expected.category));
     if (seen.category != static_cast<std::uint8_t>(expected.category)) continue;
     ++same;
