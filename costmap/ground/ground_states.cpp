@@ -129,9 +129,10 @@ GroundStates::Node GroundStates::node(const StrengthOfClass& of, int row, int bi
   const double reserve = of.strength.value - static_cast<double>(column.required);
   const double weak =
       reserve < 0.0 ? 1.0 : NormalIntegrals::at(-reserve / std::max(of.strength.std, 1e-9)).probability;
-  const double gradient = TravelCurve::gradient(bin), surface = std::sqrt(1.0 + gradient * gradient);
-  const StrengthColumn::Place place = StrengthColumn::place(excess);
-  const auto at = [&](StrengthColumn::Quantity quantity) { return column.at(quantity, place); };
+  const double surface = std::hypot(1.0, TravelCurve::gradient(bin));
+  const auto at = [&column, place = StrengthColumn::place(excess)](StrengthColumn::Quantity quantity) {
+    return column.at(quantity, place);
+  };
   const auto expected = [&](StrengthColumn::Quantity quantity) {
     const auto& entries = column.entries[static_cast<std::size_t>(quantity)];
     const auto all = static_cast<double>((w.of * Eigen::Map<const Entries>(entries.data())).sum()),
@@ -152,10 +153,8 @@ GroundStates::Node GroundStates::node(const StrengthOfClass& of, int row, int bi
   state.weak = static_cast<float>(weak);
   state.pull_margin = static_cast<float>(belief_.pull.value - climb);
   state.category = rules_->category(belief_, climb);
-  if (excess >= 0.0) {
-    state.slip_angle_rad = static_cast<float>(at(StrengthColumn::kSlipAngle));
-    state.side_force_over_load = static_cast<float>(at(StrengthColumn::kSideForce));
-  }
+  if (excess >= 0.0) state.slip_angle_rad = static_cast<float>(at(StrengthColumn::kSlipAngle));
+  if (excess >= 0.0) state.side_force_over_load = static_cast<float>(at(StrengthColumn::kSideForce));
   state.stability_margin_rad = column.margin_rad;
   const bool excluded = (state.category == terramech::Category::Dangerous && !policy.allow_dangerous) ||
                         (state.category == terramech::Category::Marginal && !policy.allow_marginal);
