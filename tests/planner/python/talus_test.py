@@ -164,7 +164,7 @@ class MapTest(Refusals):
         # Four wheels on alternating slopes; slip changes with slope, so the update can verify the sensors.
         moment, wheel = np.repeat(np.arange(80.0), 4), np.tile(np.arange(4.0), 80)
         slope = 0.15 * np.sin(moment / 7.0)
-        slip = 0.05 + 0.2 * (slope + 0.15) + np.random.default_rng(3).normal(0.0, 0.003, moment.size)
+        slip = 0.05 + 0.2 * (slope + 0.15) + np.random.default_rng(3).normal(0.0, 0.006, moment.size)
         columns = {"time_s": moment, "wheel": wheel, "x_m": 5.0 + 0.35 * moment, "y_m": 15.5 + 0.0 * moment, "load_N": 36.5 + 0.0 * moment}
         columns.update(slip=slip, slope_rad=slope, heading_rad=0.0 * moment, sinkage_m=0.01 + 0.0 * moment, torque_Nm=3.65 * (0.2 + slope))
         with tempfile.TemporaryDirectory() as name:
