@@ -247,34 +247,6 @@ TEST(Danger, EveryPitOfOneWheelIsRefused) {
   }
 }
 
-// Property: the order of rows in a file changes no cell.
-TEST(Danger, ResultIsIndependentOfRowOrder) {
-  const terramech::Rover rover = rovers()[1];
-  std::mt19937_64 random(4);
-  std::vector<Row> sorted;
-  for (int i = 0; i < 120; ++i)
-    for (int w = 0; w < 6; ++w)
-      sorted.push_back({.time_s = 2.0 * i,
-                        .x_m = 108.0 + 0.2 * i + 0.1 * w,
-                        .slip = 1e-3 * static_cast<double>(random() % 990),
-                        .torque_Nm = 0.01 * static_cast<double>(random() % 900),
-                        .sinkage_m = 1e-4 * static_cast<double>(random() % 900),
-                        .slope_rad = 0.1,
-                        .heading_rad = 0.0,
-                        .y_m = 218.5 + 1.1 * w,
-                        .wheel = "w" + std::to_string(w)});
-  std::vector<Row> shuffled = sorted;
-  std::ranges::shuffle(shuffled, random);
-  TraversabilityMap a = plain(rover, testSand()), b = plain(rover, testSand());
-  addDrive(a, tableOf(sorted, rover));
-  addDrive(b, tableOf(shuffled, rover));
-  for (int row = 0; row < kSide; ++row)
-    for (int column = 0; column < kSide; ++column) {
-      EXPECT_EQ(a.ground({column, row})->pull.value, b.ground({column, row})->pull.value);
-      EXPECT_EQ(a.published()->at({column, row}), b.published()->at({column, row}));
-    }
-}
-
 // Property: a reading that contradicts the other channels refuses its place and lowers no estimate
 // elsewhere.
 TEST(Danger, SuspectedReadingRefusesOnlyItsPlace) {

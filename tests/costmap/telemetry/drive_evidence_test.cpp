@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <numeric>
 #include <random>
 #include <sstream>
 #include <stdexcept>
@@ -402,6 +403,27 @@ TEST(DriveParts, SettledPartsYieldTheResultOfTheWhole) {
     EXPECT_TRUE(bytesOf(replayed) == bytesOf(whole)) << seed << ' ' << felt;
   }
   for (const char* const file : {"", "-wal", "-shm"}) std::filesystem::remove(path + file);
+}
+
+// Property: the order of rows in a file changes no cell.
+TEST(DriveParts, RowsInAnyOrderTeachTheSame) {
+  TraversabilityMap before = sand(), sorted = sand(), shuffled = sand();
+  const Drive drive = driveOver(before, soilOf(3), 3);
+  std::vector<std::size_t> order(drive.rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::shuffle(order, std::mt19937_64(1));
+  Drive other;
+  for (const std::size_t i : order) {
+    other.rows.push_back(drive.rows[i]);
+    other.run.push_back(drive.run[i]);
+    other.wheel.push_back(drive.wheel[i]);
+  }
+  addDrive(sorted, tableOf(drive, false));
+  addDrive(shuffled, tableOf(other, false));
+  EXPECT_NE(sorted.ground({40, 40})->pull.value, before.ground({40, 40})->pull.value);
+  for (int row = 0; row < kRoverSide; ++row)
+    for (int column = 0; column < kRoverSide; ++column)
+      EXPECT_EQ(sorted.ground({column, row})->pull.value, shuffled.ground({column, row})->pull.value);
 }
 
 // Property: without settle(), without sensor bias and with non-decreasing time, the result is independent of
