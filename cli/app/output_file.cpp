@@ -180,11 +180,6 @@ bool leavesItsFolder(const fs::path& link) {
 
 }  // namespace
 
-bool isNamed(const fs::path& path, const std::string& ending) {
-  const Names* named = formatOf(path.string());
-  return named != nullptr && named == formatOf("x" + ending);
-}
-
 CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
                        const std::string& text) {
   return command.add_option(names, path, text)

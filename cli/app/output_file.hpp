@@ -30,10 +30,6 @@ class FileLock {
   std::vector<int> held_;
 };
 
-/// Returns true if the ending of the file name denotes the same format as `ending` (".html" includes .htm and
-/// .HTML).
-bool isNamed(const std::filesystem::path& path, const std::string& ending);
-
 /// Declares an option for an output file, which checkOutputs() checks. `names` are the names of the option,
 /// and `text` is its description.
 CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,

@@ -15,8 +15,8 @@ constexpr double kSurest = 0.025;  // least standard deviation of a reading [-]
 constexpr double kModel =
     0.02;  // error of thesis Eq. 3.12 for drawbar pull over load, common to all readings of a place [-]
 constexpr double kReferenceStd = 0.05;  // standard deviation of a reading that counts as one sample [-]
-// Shared error of unverified readings, those of a sound slip sensor before its offset and scale are estimated; and
-// the error above which readings count as unverified (ours).
+// Shared error of unverified readings at the reference slip, those of a sound slip sensor before its offset and scale
+// are estimated; and the error above which readings count as unverified (ours).
 constexpr double kUnverifiedShared = 0.03, kMostShared = 0.25;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -198,12 +198,10 @@ std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& obse
       sure && observation.trust != Trust::Unverified && observation.shared_std <= kMostShared;
   if (observation.estimates())
     evidence.sources[verified ? Source{observation.drive, observation.trust} : unverified].addPull(
-        pull, verified ? observation.shared_std : kUnverifiedShared);
-  if (std::isfinite(observation.sinkage.std)) {
-    const Source of_sinkage{observation.drive, std::max(observation.trust, Trust::Once)};
-    evidence.sources[sure && observation.sinkage_verified ? of_sinkage : unverified].addSinkage(
+        pull, verified ? observation.shared_std : kUnverifiedShared / std::fmax(0.1, observation.share));
+  if (std::isfinite(observation.sinkage.std))
+    evidence.sources[sure ? Source{observation.drive, observation.trust} : unverified].addSinkage(
         observation.sinkage.value);
-  }
   return readings;
 }
 

@@ -97,7 +97,6 @@ struct WheelObservation {
   double share = 1.0;
   double pose_std_m = 0.0;          ///< position uncertainty, one standard deviation
   Trust trust = Trust::Unverified;  ///< how the sensors of `pull` were verified
-  bool sinkage_verified = false;    ///< true if the sensors of the sinkage are verified
   /// Number of the drive (driveTag()), because the sensors of each drive have their own errors.
   std::uint16_t drive = 0;
   GroundBound here{};  ///< bounds of the ground at this place

@@ -259,7 +259,6 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .share = number(row, 28),
                      .pose_std_m = out.reading.pose_std_m,
                      .trust = static_cast<Trust>(std::clamp(sqlite3_column_int(row, 20), 0, 2)),
-                     .sinkage_verified = sqlite3_column_int(row, 21) != 0,
                      .drive = static_cast<std::uint16_t>(sqlite3_column_int(row, 29)),
                      .here = {number(row, 22), number(row, 23)}};
   out.wheel = {number(row, 25), number(row, 26), number(row, 27)};
@@ -281,7 +280,7 @@ void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
   for (const double value : {o.pull.value, o.pull.std, o.sinkage.value, o.sinkage.std, r.z_m, r.pose_std_m})
     bind(s, at++, value);
   sqlite3_bind_int(s, at++, static_cast<int>(o.trust));
-  sqlite3_bind_int(s, at++, o.sinkage_verified ? 1 : 0);
+  sqlite3_bind_int(s, at++, o.trust == Trust::Unverified ? 0 : 1);
   bind(s, at++, o.here.most_pull);
   bind(s, at++, o.here.least_sinkage);
   for (const double value :

@@ -312,7 +312,6 @@ DriveReport replay(TraversabilityMap& map, const EvidenceJournal& journal,
       if (row.accepted && std::isfinite(row.observation.pull.value)) note.sensors = row.reason;
       if (!isOf(map.model().rover(), row.wheel)) {
         row.observation.trust = Trust::Unverified;
-        row.observation.sinkage_verified = false;
         ++report.others;
       }
       const bool used = row.accepted && map.learn(row.observation);

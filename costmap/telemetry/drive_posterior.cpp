@@ -15,7 +15,7 @@ constexpr std::size_t kChunk = 16;      // moments of one chunk
 constexpr double kGradientStep = 0.01;  // width of a bin of gradients
 constexpr double kIntegralScale = 2.0 / 3.0;
 constexpr double kModelError = 0.01, kSlipNoise = 0.015, kGradientNoise = 0.01, kSecondNoise = 0.03,
-                 kSecondOffset = 0.015;
+                 kOffset = 0.1;
 constexpr double kUnrelatedOffset = 0.3, kFaultOffset = 0.03;
 constexpr double kEvidence = 0.5;  // power of the likelihood: the curve of a class is never exact
 constexpr double kCoarseEvidence = 0.1;
@@ -149,7 +149,7 @@ struct Hypotheses {
 // and the shear modulus times it give one curve.
 Hypotheses hypotheses(double modulus_std, bool twice) {
   using Kind = SlipSensor::Kind;
-  constexpr double kSound = 0.015, kOffset = 0.1;
+  constexpr double kSound = 0.015;
   constexpr int kModuli = 7, kScales = 16;
   constexpr double kModulusStep = 0.35, kScaleStep = 0.15;  // of the logarithm; the former over its deviation
   Hypotheses h;
@@ -190,6 +190,10 @@ Hypotheses hypotheses(double modulus_std, bool twice) {
   addEach(
       "by gradient", 0.02,
       {{Kind::ByGradient, 0.5}, {Kind::ByGradient, 1.0}, {Kind::ByGradient, 1.5}, {Kind::ByGradient, 2.0}});
+  std::vector<SlipSensor> seconds{{.second = 0.0, .second_offset_std = kUnrelatedOffset}};
+  for (const double second : {0.4, 0.6, 0.8, 1.0, 1.25})
+    seconds.push_back({.second = second, .second_offset_std = kOffset});
+  if (twice) addEach("second", 0.02, seconds, kSound);
   onModuli(1, [&](double modulus, double part) {
     const std::size_t sensor = h.sensors.size();
     add("sound", 0.80 * part, kSound, {.modulus = modulus});
@@ -338,9 +342,9 @@ struct OfClass {
                         : sensor.kind == SlipSensor::Kind::Unrelated
                             ? kUnrelatedErrors[t] * kUnrelatedErrors[t]
                             : kSlipNoise * kSlipNoise + gain * gain * of_ground;
-      if (r.seconds > 0.0) {
-        const double known = of_ground / (of_ground + r.second_variance / (sensor.modulus * sensor.modulus));
-        residual -= gain * known * (r.second / sensor.modulus - slip);
+      if (const double scale = sensor.modulus * sensor.second; r.seconds > 0.0 && scale > 0.0) {
+        const double known = of_ground / (of_ground + r.second_variance / (scale * scale));
+        residual -= gain * known * (r.second / scale - slip);
         by_resistance *= 1.0 - known;
         variance -= gain * gain * known * of_ground;
       }
@@ -352,18 +356,20 @@ struct OfClass {
     return until;
   }
 
-  // Likelihood of the second slips, if the slips of the wheels are `modulus` times those of the curve.
-  Quadratic bySecond(double modulus, const std::vector<Curve::Driven>& driven,
-                     const std::vector<double>& variances, double evidence) const {
+  // Likelihood of the second slips.
+  Quadratic bySecond(const SlipSensor& sensor, const std::vector<Curve::Driven>& driven,
+                     const std::vector<double>& variances, std::size_t t, double evidence) const {
     Residuals all;
+    const double scale = sensor.modulus * sensor.second;
     for (std::size_t k = 0; k < readings.size(); ++k)
       if (const Reading& r = readings[k]; r.seconds > 0.0) {
-        const double variance = modulus * modulus * variances[k] + r.second_variance;
+        const double variance = scale > 0.0 ? scale * scale * variances[k] + r.second_variance
+                                            : kUnrelatedErrors[t] * kUnrelatedErrors[t];
         const double weight = evidence * r.weight;
-        all.add(weight / variance, r.second - modulus * driven[k].slip, modulus * driven[k].by_resistance,
+        all.add(weight / variance, r.second - scale * driven[k].slip, scale * driven[k].by_resistance,
                 weight * std::log(variance));
       }
-    return all.marginal(kSecondOffset);
+    return all.marginal(sensor.second_offset_std);
   }
 
   // Adds one hypothesis with one departure, node of the resistance and variation.
@@ -400,16 +406,19 @@ struct OfClass {
             logPrior(departure / ground.mean_std) - 0.5 * kResistances[node] * kResistances[node];
         for (std::size_t t = 0; t < kVariations.size(); t += step) {
           for (std::size_t k = 0; k < readings.size(); ++k) variances[k] = variance(driven[k], t);
-          std::map<double, Quadratic> by_second;  // by modulus
+          std::map<std::array<double, 3>, Quadratic> known;
+          std::vector<Quadratic> by_second;
           std::vector<Parts> until;
           for (const SlipSensor& sensor : h.sensors) {
-            if (!by_second.contains(sensor.modulus))
-              by_second.emplace(sensor.modulus, bySecond(sensor.modulus, driven, variances, evidence));
+            const std::array key{sensor.modulus, sensor.second, sensor.second_offset_std};
+            if (!known.contains(key)) known[key] = bySecond(sensor, driven, variances, t, evidence);
+            by_second.push_back(known[key]);
             until.push_back(partsOf(sensor, driven, variances, t, evidence));
           }
           for (std::size_t i = 0; i < h.all.size(); ++i) {
-            const double modulus = h.sensors[h.all[i].sensor].modulus;
-            add(out[i], h.all[i], until, by_second[modulus], of_prior, departure, node, modulus);
+            const std::size_t sensor = h.all[i].sensor;
+            add(out[i], h.all[i], until, by_second[sensor], of_prior, departure, node,
+                h.sensors[sensor].modulus);
           }
         }
       }
@@ -716,6 +725,9 @@ DriveEstimate DrivePosterior::fitted() const {
     weights = weighed(tables, h);
   }
   const std::size_t best = nameSensor(h, weights, out);
+  double second = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    second += std::string_view(h.all[i].kind) == "second" ? weights[i] : 0.0;
   std::vector<GroundClass> found = model_.parts().classes;
   for (std::size_t k = 0; k < driven.size(); ++k) {
     DriveEstimate::OfClass& of = out.classes[static_cast<std::size_t>(driven[k].index)];
@@ -729,6 +741,7 @@ DriveEstimate DrivePosterior::fitted() const {
     out.offset += sums.offset / sums.weight / static_cast<double>(driven.size());
     out.changed_offset += sums.changed / sums.weight / static_cast<double>(driven.size());
   }
+  out.twice = out.twice && second < 1.0 - DriveEstimate::kVerified;
   GroundModel::Parts parts = model_.parts();
   parts.classes = std::move(found);
   out.ground = std::make_shared<const GroundModel>(std::move(parts));

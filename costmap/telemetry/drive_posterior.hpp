@@ -14,8 +14,8 @@
 
 namespace talus::costmap {
 
-/// Slip sensor, and the shear modulus of its ground: what the sensor reads, without its offset, where the curve of the
-/// class has a slip. Wheels slip by `modulus`, the shear modulus over that of the class, times this slip.
+/// Slip sensors, and the shear modulus of their ground: what the sensor reads, without its offset, where the curve of
+/// the class has a slip. Wheels slip by `modulus`, the shear modulus over that of the class, times this slip.
 struct SlipSensor {
   /// Linear: scale * slip of the wheels. Knee: the part of slips beyond `knee` times `scale`. Uphill: times `scale` on
   /// climbs. ByGradient: less `scale` times the gradient of a climb. OfClass: the slip of the class on the gradient.
@@ -23,6 +23,8 @@ struct SlipSensor {
   enum class Kind : std::uint8_t { Linear, Knee, Uphill, ByGradient, OfClass, Unrelated };
   Kind kind = Kind::Linear;
   double scale = 1.0, knee = 0.0, modulus = 1.0;
+  double second = 1.0;  ///< second slip over that of the wheels; 0: constant, whatever the ground does
+  double second_offset_std = 0.015;  ///< standard deviation of the offset of the second slip
 
   /// Returns the reading at a slip of the curve on a gradient; `of_class` is the slip of the class there.
   double read(double slip, double gradient, double of_class) const noexcept;
@@ -86,7 +88,7 @@ struct DriveEstimate {
 /// 0.5 has, on a slope of gradient g, the slip m i, m the shear modulus over that of the class, with
 ///   P_R(i) + (D - P_R(0.5) + P_0(0.5)) h_R(i) = g                                                       (B2)
 /// P and H are means over the wheels of the rover, of which some run in ruts. A sensor (SlipSensor) with offset b
-/// reads b + read(m i) + a u + e1, a second slip b2 + m i + u + e2, where a is the change of the reading for a change of
+/// reads b + read(m i) + a u + e1, a second slip b2 + m i + u + e2 unless it is false (SlipSensor::second), where a is the change of the reading for a change of
 /// the slip, and
 ///   var u = ((t^2 p^2 + e^2) h^2 + e^2) (di/dg)^2, var e1 = 0.015^2, var e2 = 0.03^2 + scatter^2          (B3)
 /// p is the standard deviation of the class between places, t its share in this drive, e the error of curve and

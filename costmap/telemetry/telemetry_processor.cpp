@@ -32,13 +32,9 @@ double kept(double most_pull) noexcept {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLargestStdShare =
     2.0;  // in units of the class's mean_std: a drive with a greater standard deviation is not verified (ours)
-// Least thrust, relative to that at the reference slip, at which readings of sensors that are not verified tell
-// about the strength of the ground: below, an offset of the slip outweighs it (ours).
-constexpr double kMobilised = 0.5;
 constexpr double kNoStrength = 1.0;    // standard deviation of a pull that tells nothing
 constexpr std::size_t kFirstFit = 32;  // number of moments before the first fit
-constexpr const char* kSettles = "; a second slip settles it: give rim_speed_mps and speed_mps";
-constexpr double kCrabbing = 0.1;  // slip angle above which a wheel does not go straight [rad]
+constexpr double kCrabbing = 0.1;      // slip angle above which a wheel does not go straight [rad]
 std::optional<int> classAt(const TraversabilityMap& map, const TelemetryReading& reading) {
   const auto cell = map.grid().cellAt(reading.place);
   const int index = cell ? map.surface().classIndex(*cell) : -1;
@@ -61,9 +57,10 @@ double median(std::vector<double> values) {
 }
 
 // Returns the most probable kind of sensors of a drive, and what would settle a fault.
-std::string sensorText(const DriveEstimate& drive) {
+std::string sensorText(const DriveEstimate& drive, const char* settles) {
   static const std::map<std::string, const char*> texts{
       {"sound", "sound slip sensor"},
+      {"second", "the second slip is false, by rim_speed_mps, speed_mps or positions; the first is sound"},
       {"offset", "slip has an offset, which is corrected"},
       {"step", "slip steps on the way, which is corrected"},
       {"stuck", "slip no longer depends on the ground from some place on"},
@@ -86,7 +83,7 @@ std::string sensorText(const DriveEstimate& drive) {
   const std::string& kind = verified ? drive.hypothesis : drive.uninforming;
   const bool tells = verified && kind != "stuck";
   return std::string(texts.at(kind)) + (drive.twice || tells ? "" : "; such rows tell nothing") +
-         " (probability " + probability + ")" + (drive.twice || kind == "sound" ? "" : kSettles);
+         " (probability " + probability + ")" + (drive.twice || kind == "sound" ? "" : settles);
 }
 
 }  // namespace
@@ -122,7 +119,6 @@ GroundBound DangerWatch::bound(int class_index, const TelemetryReading& reading,
 WheelObservation boundAlone(const WheelObservation& observation) {
   WheelObservation left = observation;
   left.pull = left.sinkage = {kNone, kNone};
-  left.sinkage_verified = false;
   left.trust = Trust::Unverified;
   return left;
 }
@@ -133,6 +129,7 @@ TelemetryProcessor::TelemetryProcessor(const TraversabilityMap& map)
 std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const TelemetryRows& rows,
                                                                     const Moment& moment,
                                                                     const DriveVerdict& verdict) {
+  settles_ = rows.settles();
   transferred_ += moment.transferred ? moment.readings.size() : 0;
   const std::vector<bool> jump = jumps(rows, moment);
   std::vector<Result> all;
@@ -166,7 +163,7 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
   const std::size_t number = posterior_.moments();
   take(rows, sound);
   if (verdict.follows && !verdict.drive) follow();
-  if (verdict.drive && fitted_ != verdict.drive) sensors_ = sensorText(*(fitted_ = verdict.drive));
+  if (verdict.drive && fitted_ != verdict.drive) sensors_ = sensorText(*(fitted_ = verdict.drive), settles_);
   const bool of_rover =
       carriesRover(moment.readings, map_.model().rover()) &&
       std::all_of(moment.rows.begin(), moment.rows.end(), [&](std::size_t row) { return rows.ofRover(row); });
@@ -174,8 +171,6 @@ std::vector<TelemetryProcessor::Result> TelemetryProcessor::process(const Teleme
     others_ += moment.readings.size();
   else if (fitted_)
     correct(sound, number, seen);
-  for (auto& one : seen)
-    if (one && one->trust == Trust::Unverified && one->share < kMobilised) one->pull.std = kNoStrength;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     Result& result = all[sound_at[i]];
     if (seen[i]) {
@@ -249,7 +244,7 @@ void TelemetryProcessor::take(const TelemetryRows& rows, const Sound& sound) {
 // Repeats the fit each time that the number of moments has grown by a quarter.
 void TelemetryProcessor::follow() {
   if (posterior_.moments() < std::max(next_fit_, kFirstFit)) return;
-  sensors_ = sensorText(*(fitted_ = std::make_shared<DriveEstimate>(posterior_.fitted())));
+  sensors_ = sensorText(*(fitted_ = std::make_shared<DriveEstimate>(posterior_.fitted())), settles_);
   next_fit_ = posterior_.moments() + posterior_.moments() / 4;
 }
 
@@ -272,7 +267,7 @@ std::vector<std::string> TelemetryProcessor::findings() const {
                     (fitted_->twice ? ""
                      : change < 0.0 ? ", or slip is read too large"
                                     : ", or slip is read too small") +
-                    (fitted_->twice ? "" : kSettles));
+                    (fitted_->twice ? "" : settles_));
   }
   return lines;
 }
@@ -317,7 +312,6 @@ void TelemetryProcessor::correct(const Sound& sound, std::size_t number,
     seen[i]->pull.std /= gains[i];
     seen[i]->shared_std = of.shared_std;
     if (verified) seen[i]->trust = drive.twice ? Trust::Twice : Trust::Once;
-    seen[i]->sinkage_verified = verified;
   }
 }
 

@@ -131,6 +131,7 @@ class TelemetryProcessor {
   DrivePosterior posterior_;
   std::shared_ptr<const DriveEstimate> fitted_;  // estimate from some of the moments so far
   std::string sensors_{};
+  const char* settles_ = "";  // remedy of a fault of the slip
   std::size_t next_fit_ = 0;  // number of moments at which the fit is repeated
   WheelObserver observer_;
   std::size_t transferred_ = 0, others_ = 0;

@@ -188,8 +188,8 @@ TelemetryRows::TelemetryRows(const terramech::Telemetry& telemetry, const Traver
 std::vector<std::size_t> TelemetryRows::byTime() const {
   std::vector<std::tuple<std::string, double, std::string, std::size_t>> rows;
   for (std::size_t i = 0; i < size(); ++i) {
-    const double time_s = std::isfinite(value(time_, i)) ? value(time_, i) : kInfinity;
-    rows.emplace_back(time_ ? run(i) : "", time_s, time_ ? wheel(i) : "", i);
+    const bool timed = std::isfinite(value(time_, i));
+    rows.emplace_back(time_ ? run(i) : "", timed ? value(time_, i) : kInfinity, timed ? wheel(i) : "", i);
   }
   std::ranges::sort(rows);
   std::vector<std::size_t> order;
@@ -246,7 +246,14 @@ void TelemetryRows::measureSecond(const terramech::Telemetry& telemetry) {
     }
   }
   second_std_ = bends > 0.0 ? std::sqrt(2.0 * jitter_m2 / bends) / kSecondWay_m : 0.0;
-  if (copied < kCopied * kCopied * rows) second_.clear();
+  copied_ = copied < kCopied * kCopied * rows;
+  if (copied_) second_.clear();
+}
+
+const char* TelemetryRows::settles() const noexcept {
+  return copied_           ? "; a second slip settles it: that by rim_speed_mps is computed from slip"
+         : second_.empty() ? "; a second slip settles it: give rim_speed_mps and speed_mps"
+                           : "; a second slip settles it: that by rim_speed_mps is false or too uncertain";
 }
 
 double TelemetryRows::value(const std::vector<double>* column, std::size_t i) {
@@ -322,9 +329,14 @@ std::vector<std::vector<std::size_t>> TelemetryRows::byMoment() const {
   std::map<std::string, std::size_t>
       read;  // rows of each wheel at one time; the second begins another moment
   std::size_t first = 0, before = 0;
+  const terramech::Rover& rover = map_.model().rover();
+  const double size_m = std::hypot(rover.wheelbase_m, rover.track_m) + rover.wheel.width_m;
   for (const std::size_t i : order_) {
-    const bool same = time_ && wheel_ && value(time_, i) == value(time_, before) && run(i) == run(before);
-    if (!same) {
+    const double time_s = value(time_, i), time_before_s = value(time_, before);
+    const bool untimed = std::isnan(time_s) && std::isnan(time_before_s),
+               beside =
+                   !read.contains(wheel(i)) && std::hypot(x_[i] - x_[before], y_[i] - y_[before]) <= size_m;
+    if (!wheel_ || run(i) != run(before) || !(untimed ? beside : time_s == time_before_s)) {
       read.clear();
       first = moments.size();
     }

@@ -84,15 +84,18 @@ class TelemetryRows {
   double secondSlip(std::size_t i) const { return second_.empty() ? value(nullptr, i) : second_[i]; }
   /// Returns the standard deviation of secondSlip() by the scatter of the positions [-].
   double secondStd() const noexcept { return second_std_; }
+  /// Returns what would settle a fault of the slip, as the end of a finding.
+  const char* settles() const noexcept;
   static constexpr double kSecondWay_m = 2.0;
 
   /// Returns the indices of all rows, grouped by moment, in the order of time. A moment is the rows of different
-  /// wheels at one time of one run, wherever they are in the file.
+  /// wheels at one time of one run, wherever they are in the file; without times, subsequent rows of different
+  /// wheels not farther apart than the rover is long.
   std::vector<std::vector<std::size_t>> byMoment() const;
 
  private:
   static double value(const std::vector<double>* column, std::size_t i);
-  // Returns the rows by run, time and wheel, those of a run without time last; as in the file without the column.
+  // Returns the rows by run, time and wheel; those without time last, as in the file.
   std::vector<std::size_t> byTime() const;
   double mapGradient(const TelemetryReading& reading, double direction_rad) const;
   double measuredSlope(std::size_t i) const;
@@ -109,6 +112,7 @@ class TelemetryRows {
   std::vector<std::size_t> order_;
   std::vector<double> second_;
   double second_std_ = 0.0;
+  bool copied_ = false;  // true if the second slips were computed from the first
 };
 
 /// The readings of all wheels at one time. If all wheels have the same load although the rover is on a slope,

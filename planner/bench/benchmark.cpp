@@ -162,19 +162,6 @@ std::vector<BenchmarkJob> jobsOf(const BenchmarkPlan& plan) {
   return jobs;
 }
 
-std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const ProgressMonitor& watch) {
-  const std::vector<BenchmarkJob> jobs = jobsOf(plan);
-  std::vector<BenchmarkRun> runs;
-  for (const BenchmarkJob& job : jobs) {
-    if (watch.stopped()) return runs;
-    const std::string bytes = runIsolated(plan, job, watch);
-    if (bytes.empty() && watch.stopped()) return runs;
-    runs.push_back(benchmarkRun(job, bytes));
-    watch.report(static_cast<double>(runs.size()) / static_cast<double>(jobs.size()));
-  }
-  return runs;
-}
-
 bool stands(const BenchmarkRun& run) noexcept {
   return run.status == RouteStatus::Found && !run.crashed && !run.breached;
 }

@@ -93,9 +93,6 @@ std::string runIsolated(const BenchmarkPlan& plan, const BenchmarkJob& job,
 /// Converts the bytes that runIsolated() returned for `job` to the result of a run.
 BenchmarkRun benchmarkRun(const BenchmarkJob& job, const std::string& bytes);
 
-/// Executes all jobs one after another. After a stop, returns only the runs that ended before.
-std::vector<BenchmarkRun> runBenchmark(const BenchmarkPlan& plan, const ProgressMonitor& watch = {});
-
 /// Returns true if the run ended with a route without violations. The costs of other runs are meaningless.
 bool stands(const BenchmarkRun& run) noexcept;
 

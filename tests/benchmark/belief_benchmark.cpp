@@ -33,8 +33,7 @@ costmap::WheelObservation seen(const maps::Point& place, double pull) {
           .place = place,
           .pull = {pull, 0.05},
           .sinkage = {0.17, 0.05},
-          .trust = costmap::Trust::Once,
-          .sinkage_verified = true};
+          .trust = costmap::Trust::Once};
 }
 
 // Samples of six wheels at 100 Hz along a line, each learned and published separately.

@@ -76,8 +76,7 @@ WheelObservation soft(double x, double y) {
           .place = {100.0 + x, 200.0 + y},
           .pull = {0.05, 0.05},
           .sinkage = {0.6, 0.05},
-          .trust = Trust::Once,
-          .sinkage_verified = true};
+          .trust = Trust::Once};
 }
 
 // A reading whose pull is lower than the class mean by `by`.
@@ -86,8 +85,7 @@ WheelObservation weaker(double x, double y, double by) {
           .place = {100.0 + x, 200.0 + y},
           .pull = {testGround()->prior(0).pull.value - by, 0.05},
           .sinkage = {0.2, 0.05},
-          .trust = Trust::Once,
-          .sinkage_verified = true};
+          .trust = Trust::Once};
 }
 
 TEST(TraversabilityMap, EvidenceIsLocalAndUncertaintyGrowsWithDistance) {

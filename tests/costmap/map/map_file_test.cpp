@@ -267,7 +267,6 @@ WheelObservation Sequence::reading(const maps::Point& place) {
   seen.pull = {0.22 + uniform(-how_.pull_spread, how_.pull_spread), uniform(0.0, 1.0) < 0.8 ? 0.04 : 0.12};
   seen.sinkage = {uniform(0.05, 0.4), 0.05};
   seen.trust = static_cast<Trust>(whole(0, 2));
-  seen.sinkage_verified = uniform(0.0, 1.0) < 0.7;
   if (uniform(0.0, 1.0) < 0.3) seen.shared_std = uniform(0.0, 0.1);
   if (uniform(0.0, 1.0) < 0.15) seen.pose_std_m = uniform(0.0, 4.0);
   if (uniform(0.0, 1.0) < 0.1) seen.here.most_pull = uniform(-0.2, 0.2);

@@ -116,7 +116,6 @@ WheelObservation drive(std::mt19937& random, const maps::Grid& grid) {
   seen.pull = {uniform(random, 0.05, 0.4), 0.05};
   seen.sinkage = {uniform(random, 0.05, 0.4), 0.05};
   seen.trust = Trust::Once;
-  seen.sinkage_verified = true;
   return seen;
 }
 

@@ -475,7 +475,6 @@ WheelObservation anywhere(std::mt19937_64& random) {
                         .sinkage = {between(0.0, 0.3), 0.05}};
   seen.shared_std = 0.03;
   seen.trust = static_cast<Trust>(random() % 3);
-  seen.sinkage_verified = random() % 2 == 0;
   seen.pose_std_m = random() % 2 == 0 ? 0.0 : 0.4;
   if (random() % 8 == 0) seen.here.most_pull = between(-0.2, 0.1);
   if (random() % 8 == 0) seen.here.least_sinkage = between(0.5, 1.0);

@@ -405,9 +405,9 @@ TEST(DriveParts, SettledPartsYieldTheResultOfTheWhole) {
   for (const char* const file : {"", "-wal", "-shm"}) std::filesystem::remove(path + file);
 }
 
-// Property: the order of rows in a file changes no cell.
+// Property: the order of rows in a file changes no cell, nor does a file without times in the order of time.
 TEST(DriveParts, RowsInAnyOrderTeachTheSame) {
-  TraversabilityMap before = sand(), sorted = sand(), shuffled = sand();
+  TraversabilityMap before = sand(), sorted = sand(), shuffled = sand(), untimed = sand();
   const Drive drive = driveOver(before, soilOf(3), 3);
   std::vector<std::size_t> order(drive.rows.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -420,10 +420,14 @@ TEST(DriveParts, RowsInAnyOrderTeachTheSame) {
   }
   addDrive(sorted, tableOf(drive, false));
   addDrive(shuffled, tableOf(other, false));
+  terramech::Telemetry table = tableOf(drive, false);
+  std::erase_if(table.numbers, [](const auto& column) { return column.name == "time_s"; });
+  addDrive(untimed, table);
   EXPECT_NE(sorted.ground({40, 40})->pull.value, before.ground({40, 40})->pull.value);
   for (int row = 0; row < kRoverSide; ++row)
     for (int column = 0; column < kRoverSide; ++column)
-      EXPECT_EQ(sorted.ground({column, row})->pull.value, shuffled.ground({column, row})->pull.value);
+      for (const TraversabilityMap* map : {&shuffled, &untimed})
+        EXPECT_EQ(sorted.ground({column, row})->pull.value, map->ground({column, row})->pull.value);
 }
 
 // Property: without settle(), without sensor bias and with non-decreasing time, the result is independent of
