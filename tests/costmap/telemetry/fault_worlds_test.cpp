@@ -273,7 +273,7 @@ struct Errors {
 // same property. The estimates of sound drives are unbiased and their deviations true, within the sampling error; those
 // of faulty drives, too, where the slip is measured twice.
 TEST(FaultWorlds, FaultsAllowNoWeakGround) {
-  const CampaignPart part = campaignPart("TALUS_FAULT_WORLDS", 72);
+  const CampaignPart part = campaignPart("TALUS_FAULT_WORLDS", 54);
   const auto class_model = groundOf(groundClass(1, sandPrior(), testRover()));
   const Pull of_class(*class_model);
   std::map<std::string, Changed> of_fault;
