@@ -83,7 +83,8 @@ std::string sensorText(const DriveEstimate& drive, const char* settles) {
   const std::string& kind = verified ? drive.hypothesis : drive.uninforming;
   const bool tells = verified && kind != "stuck";
   return std::string(texts.at(kind)) + (drive.twice || tells ? "" : "; such rows tell nothing") +
-         " (probability " + probability + ")" + (drive.twice || kind == "sound" ? "" : settles);
+         " (probability " + probability + ")" +
+         (drive.twice || kind == "sound" || kind == "second" ? "" : settles);
 }
 
 }  // namespace
