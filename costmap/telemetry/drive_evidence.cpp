@@ -249,7 +249,7 @@ DriveIntake::DriveIntake(TraversabilityMap& map, EvidenceJournal* journal, const
 DriveIntake::~DriveIntake() = default;
 
 void DriveIntake::add(const terramech::Telemetry& telemetry) {
-  state_->put(telemetry, state_->processor->soFar());
+  state_->put(telemetry, {.follows = true});
 }
 
 void DriveIntake::settle() {

@@ -536,7 +536,10 @@ std::size_t nameSensor(const Hypotheses& h, const std::vector<double>& weights, 
 // Strength of one class over the hypotheses.
 DriveEstimate::OfClass strengthBy(const Hypotheses& h, const std::vector<double>& weights,
                                   const OfClass::Table& table, const OfClass& of, bool twice) {
-  const auto isSound = [&](std::size_t i) { return std::string_view(h.all[i].kind) == "sound"; };
+  const auto isSound = [&](std::size_t i) {
+    const std::string_view kind = h.all[i].kind;
+    return kind == "sound" || kind == "second";
+  };
   const auto informs = [&](std::size_t i) { return twice || h.sensors[h.all[i].sensor].informs(); };
   const double rut2 = std::pow(of.inRut() * of.ground.rut_std, 2);
   const auto by = [&](const auto& counts) {

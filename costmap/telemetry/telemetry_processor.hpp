@@ -95,10 +95,8 @@ class TelemetryProcessor {
   /// indicates no danger or has no position.
   std::optional<WheelObservation> rejected(const TelemetryRows& rows, std::size_t row) const;
 
-  /// Return what all rows so far tell. soFar() omits the estimate of the drive, so that each row uses the
-  /// estimate at that row.
+  /// Returns what all rows so far tell.
   DriveVerdict verdict() const;
-  static DriveVerdict soFar() { return {.follows = true}; }
   /// Returns what the sensors of the drive were found to be, as text, and the remedy of a fault; empty before the
   /// first estimate.
   const std::string& sensors() const noexcept { return sensors_; }
