@@ -88,8 +88,8 @@ struct DriveEstimate {
 /// 0.5 has, on a slope of gradient g, the slip m i, m the shear modulus over that of the class, with
 ///   P_R(i) + (D - P_R(0.5) + P_0(0.5)) h_R(i) = g                                                       (B2)
 /// P and H are means over the wheels of the rover, of which some run in ruts. A sensor (SlipSensor) with offset b
-/// reads b + read(m i) + a u + e1, a second slip b2 + m i + u + e2 unless it is false (SlipSensor::second), where a is the change of the reading for a change of
-/// the slip, and
+/// reads b + read(m i) + a u + e1, a second slip b2 + m i + u + e2 unless it is false (SlipSensor::second), where
+/// a is the change of the reading for a change of the slip, and
 ///   var u = ((t^2 p^2 + e^2) h^2 + e^2) (di/dg)^2, var e1 = 0.015^2, var e2 = 0.03^2 + scatter^2          (B3)
 /// p is the standard deviation of the class between places, t its share in this drive, e the error of curve and
 /// gradient (0.01, or 0.003 where t is 0), u the departure of a place, which both slips have. Each kind of sensor

@@ -466,20 +466,24 @@ INSTANTIATE_TEST_SUITE_P(Each, OneFaultyDrive,
                                            Fault{"of_the_class", [](double, double of) { return of; }}),
                          [](const auto& each) { return each.param.name; });
 
+// Telemetry of a drive with a second slip.
+terramech::Telemetry withSecond(const Drive& drive, const Fault& fault) {
+  terramech::Telemetry table = tableOf(drive, false);
+  std::vector<double> speed;
+  for (const auto& row : drive.rows)
+    speed.push_back(0.2 * (1.0 - fault.read(row[kSlip], std::tan(row[kSlope]))));
+  table.numbers.push_back({"rim_speed_mps", std::vector<double>(speed.size(), 0.2)});
+  table.numbers.push_back({"speed_mps", std::move(speed)});
+  return table;
+}
+
 class FalseSecondSlip : public ::testing::TestWithParam<Fault> {};
 
 // Property: a false second slip beside a sound first one is named, and allows no climb that the class refuses.
 TEST_P(FalseSecondSlip, IsNamedAndAllowsNothing) {
   TraversabilityMap map = sand();
   const std::vector<bool> before = allowed(map);
-  const Drive drive = driveOver(map, testSand(), 1);
-  terramech::Telemetry table = tableOf(drive, false);
-  std::vector<double> speed;
-  for (const auto& row : drive.rows)
-    speed.push_back(0.2 * (1.0 - GetParam().read(row[kSlip], std::tan(row[kSlope]))));
-  table.numbers.push_back({"rim_speed_mps", std::vector<double>(speed.size(), 0.2)});
-  table.numbers.push_back({"speed_mps", std::move(speed)});
-  const DriveReport report = addDrive(map, table);
+  const DriveReport report = addDrive(map, withSecond(driveOver(map, testSand(), 1), GetParam()));
   EXPECT_TRUE(std::ranges::any_of(
       report.findings, [](const std::string& line) { return line.find("the second slip is false") == 0; }));
   const std::vector<bool> after = allowed(map);
@@ -545,7 +549,10 @@ TEST(DriveAgainstDrive, ComputedSlipAndWeakGroundAreNamed) {
       contains(addDrive(map, tableOf(soundDrive(map, 1), false)), "below its soil: the ground is weaker"));
   Drive second = soundDrive(map, 2);
   for (auto& row : second.rows) row[kSlip] = slipOfClass(map.model(), std::tan(row[kSlope]));
-  EXPECT_TRUE(contains(addDrive(map, tableOf(second, false)), "slip is computed from the soil of the class"));
+  const Fault copy{"copy", [](double slip, double) { return slip; }};
+  const DriveReport of_class = addDrive(map, withSecond(second, copy));
+  EXPECT_TRUE(contains(of_class, "slip is computed from the soil of the class"));
+  EXPECT_TRUE(contains(of_class, "that by rim_speed_mps is computed from slip"));
 }
 
 // Property: slip that is read too small from half way on raises no estimate, and the finding states the cause
