@@ -48,6 +48,7 @@ void SourceReadings::add(const SourceReadings& other, int sign) noexcept {
        {&SourceReadings::weight, &SourceReadings::pull, &SourceReadings::shared, &SourceReadings::sinkages,
         &SourceReadings::sinkage})
     this->*sum += sign * other.*sum;
+  updated_s = std::max(updated_s, other.updated_s);
   if (sign > 0)
     bound.join(other.bound);
   else if (other.bound.any())
@@ -58,8 +59,14 @@ std::vector<SourcePull> BlockEvidence::pulls() const {
   std::vector<SourcePull> pulls;
   for (const auto& [source, of] : sources)
     if (const double w = real(of.weight); w > 0.0)
-      pulls.push_back({source, w, real(of.pull) / w, real(of.shared) / w});
+      pulls.push_back({source, w, real(of.pull) / w, static_cast<double>(of.updated_s), real(of.shared) / w});
   return pulls;
+}
+
+std::uint32_t BlockEvidence::updated_s() const noexcept {
+  std::uint32_t newest = 0;
+  for (const auto& [source, of] : sources) newest = std::max(newest, of.updated_s);
+  return newest;
 }
 
 double BlockEvidence::pull() const {
@@ -138,7 +145,6 @@ maps::CellBox EvidenceField::count(const SavedBlock& readings, int sign) {
     if (own->second.empty()) block.sources.erase(own);
   }
   contribute(1);
-  block.updated_s = std::max(block.updated_s, readings.evidence.updated_s);
   block.reach = std::max(block.reach, readings.evidence.reach);
   const double reach_m = block.reach_m();
   if (block.sources.empty()) store_->evidence.erase(readings.block);
@@ -184,7 +190,6 @@ std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& obse
   const double correlation_length_m = site_->model->parts().policy.correlation_length_m;
   SavedBlock readings{.block = store_->topOf(*cell, class_index), .evidence = {}};
   BlockEvidence& evidence = readings.evidence;
-  evidence.updated_s = secondsOf(observation.time_s);
   evidence.reach = static_cast<std::uint8_t>(
       std::clamp(std::ceil(10.0 * kPoseReach * observation.pose_std_m - 1e-9), 0.0, 255.0));
   const Source unverified{observation.drive, Trust::Unverified};
@@ -202,6 +207,7 @@ std::optional<SavedBlock> EvidenceField::readingsOf(const WheelObservation& obse
   if (std::isfinite(observation.sinkage.std))
     evidence.sources[sure ? Source{observation.drive, observation.trust} : unverified].addSinkage(
         observation.sinkage.value);
+  for (auto& [source, of] : evidence.sources) of.updated_s = secondsOf(observation.time_s);
   return readings;
 }
 

@@ -86,6 +86,7 @@ constexpr std::array<double, 3> kFaulty{0.5, 0.07, 0.001};
 constexpr double kFaultStd = 2.0;      // departures that faulty sensors read, over mean_std
 constexpr double kLeastError = 0.005;  // least error of a source [-]
 constexpr double kWeightStep = 1.0 / 64.0;
+constexpr double kDay_s = 86400.0;
 
 // Rounded towards 0, so that little evidence leaves a class as it was.
 double rounded(double value, double step) noexcept {
@@ -95,16 +96,45 @@ double roundedUp(double value, double step, double most) noexcept {
   return step > 0.0 ? std::min(std::ceil(value / step - 1e-6) * step, most) : value;
 }
 
-// A hypothesis while sources are added: log of its weight, precision of D', and mean of D' times precision.
-struct Hypothesis {
-  double log_weight, precision, sum;
-  std::vector<bool> faulty{};
-};
-
-// Departure that a source read, weighted over its places.
+// Departure that a source read, weighted over its places, and the correlation of the ground then with that of the
+// source before, and with the present one.
 struct Heard {
   Source source;
-  double mean, shared, variance;
+  double days, mean, shared, variance, before = 1.0, now = 1.0;
+};
+
+// Sorts sources by time and sets their correlations; the correlation time is in days, 0: no change.
+void sortByTime(std::vector<Heard>& heard, double correlation_days) {
+  double newest = 0.0;
+  for (const Heard& one : heard) newest = std::max(newest, one.days);
+  for (Heard& one : heard)
+    if (one.days == 0.0) one.days = newest;
+  std::ranges::stable_sort(heard, {}, &Heard::days);
+  for (std::size_t i = 0; i < heard.size() && correlation_days > 0.0; ++i) {
+    heard[i].before = std::exp((heard[i > 0 ? i - 1 : 0].days - heard[i].days) / correlation_days);
+    heard[i].now = std::exp((heard[i].days - newest) / correlation_days);
+  }
+}
+
+// A hypothesis while sources are added: log of its weight, mean and variance of D'.
+struct Hypothesis {
+  double log_weight, mean, variance;
+  std::vector<bool> faulty{};
+
+  // Returns the hypothesis with one more source, sound or faulty, whose reading has the variance `of_ground` beside
+  // that of its error.
+  Hypothesis with(const Heard& one, double of_ground, bool is_faulty) const {
+    Hypothesis h = *this;
+    const double of_fault = kFaulty[static_cast<std::size_t>(one.source.trust)];
+    const double all = one.variance + of_ground, off = one.mean - (is_faulty ? 0.0 : mean);
+    h.log_weight += std::log(is_faulty ? of_fault : 1.0 - of_fault) - 0.5 * (std::log(all) + off * off / all);
+    if (!is_faulty) {
+      h.mean += variance / all * off;
+      h.variance *= one.variance / all;
+    }
+    h.faulty.push_back(is_faulty);
+    return h;
+  }
 };
 
 }  // namespace
@@ -121,6 +151,7 @@ void ClassEvidence::count(std::span<const SourcePull> pulls, double prior, doubl
     sums.weight += sign * fixedPoint(weight);
     sums.departure += sign * fixedPoint(weight * departure);
     sums.shared += sign * fixedPoint(weight * one.shared);
+    sums.days += sign * fixedPoint(weight * one.time_s / kDay_s);
     if (sums.weight == 0) sources_.erase(one.source);
     most = std::max(most, weight);
   }
@@ -140,29 +171,24 @@ double ClassEvidence::places() const noexcept {
 ClassState ClassEvidence::state(double step) const {
   const double p2 = ground_.pull_std * ground_.pull_std, q2 = ground_.mean_std * ground_.mean_std;
   const double of_places = places_ > 0 ? p2 / places() : 0.0;
-  std::vector<Hypothesis> all{{0.0, 1.0 / (q2 + of_places), 0.0}};
   std::vector<Heard> heard;
   for (const auto& [source, sums] : sources_) {
-    const double weight = static_cast<double>(sums.weight) / kUnit;
-    const double shared = std::max(static_cast<double>(sums.shared) / kUnit / weight, kLeastError);
-    heard.push_back({source, static_cast<double>(sums.departure) / kUnit / weight, shared,
-                     shared * shared + std::max(p2 / weight - of_places, 0.0)});
+    const double weight = static_cast<double>(sums.weight);
+    const double shared = std::max(static_cast<double>(sums.shared) / weight, kLeastError);
+    heard.push_back({source, static_cast<double>(sums.days) / weight,
+                     static_cast<double>(sums.departure) / weight, shared,
+                     shared * shared + std::max(p2 * kUnit / weight - of_places, 0.0)});
+  }
+  sortByTime(heard, ground_.soil.correlation_time_s / kDay_s);
+  std::vector<Hypothesis> all{{0.0, 0.0, q2 + of_places}};
+  for (const Heard& one : heard) {
     std::vector<Hypothesis> next;
-    for (const Hypothesis& before : all)
-      for (const bool faulty : {false, true}) {
-        const double of_fault = kFaulty[static_cast<std::size_t>(source.trust)],
-                     error = heard.back().variance;
-        const double variance =
-            error + (faulty ? kFaultStd * kFaultStd * q2 + of_places : 1.0 / before.precision);
-        const double off = heard.back().mean - (faulty ? 0.0 : before.sum / before.precision);
-        Hypothesis h = before;
-        h.log_weight +=
-            std::log(faulty ? of_fault : 1.0 - of_fault) - 0.5 * (std::log(variance) + off * off / variance);
-        h.precision += faulty ? 0.0 : 1.0 / error;
-        h.sum += faulty ? 0.0 : heard.back().mean / error;
-        h.faulty.push_back(faulty);
-        next.push_back(std::move(h));
-      }
+    for (Hypothesis h : all) {
+      h.mean *= one.before;
+      h.variance = one.before * one.before * h.variance + (1.0 - one.before * one.before) * (q2 + of_places);
+      next.push_back(h.with(one, kFaultStd * kFaultStd * q2 + of_places, true));
+      next.push_back(h.with(one, h.variance, false));
+    }
     std::ranges::stable_sort(next, std::greater{}, &Hypothesis::log_weight);
     if (next.size() > kMost) next.resize(kMost);
     all = std::move(next);
@@ -171,18 +197,23 @@ ClassState ClassEvidence::state(double step) const {
   if (heard.empty()) all.clear(), state.hypotheses.push_back({.own_std = ground_.mean_std});
   double sum = 0.0;
   for (const Hypothesis& h : all) {
-    const double share = q2 / (q2 + of_places), mean = h.sum / h.precision;
+    const double share = q2 / (q2 + of_places);
     const double own = roundedUp(std::sqrt(q2 * (1.0 - share)), step, std::sqrt(q2));
     ClassHypothesis one{.weight = std::exp(h.log_weight - all.front().log_weight),
-                        .pull = rounded(share * mean, step),
+                        .pull = rounded(share * h.mean, step),
                         .own_std = own,
-                        .shared_std = roundedUp(share / std::sqrt(h.precision), step,
+                        .shared_std = roundedUp(share * std::sqrt(h.variance), step,
                                                 std::sqrt(std::max(q2 - own * own, 0.0)))};
-    for (std::size_t i = 0; i < heard.size(); ++i)
+    for (std::size_t i = 0; i < heard.size(); ++i) {
+      const auto& [source, days, mean, shared, variance, before, now] = heard[i];
+      const double changed = q2 * (1.0 - now * now);
       if (!h.faulty[i])
         one.sound.emplace_back(
-            heard[i].source,
-            rounded((heard[i].mean - mean) * heard[i].shared * heard[i].shared / heard[i].variance, step));
+            source, rounded((now - 1.0) * h.mean +
+                                (mean - now * h.mean) * (shared * shared + changed) / (variance + changed),
+                            step));
+    }
+    std::ranges::sort(one.sound);
     if (step > 0.0) one.weight = rounded(one.weight, kWeightStep);
     if (!(one.weight > 0.0)) continue;
     sum += one.weight;

@@ -79,7 +79,7 @@ struct ClassHypothesis {
   double own_std = 0.0;
   /// Standard deviation of `pull` by the errors common to all readings of a source [-].
   double shared_std = 0.0;
-  /// The sound sources, ascending, and the mean of the common error of each [-].
+  /// The sound sources, ascending, and the mean of the common departure of each from the present ground [-].
   std::vector<std::pair<Source, double>> sound{};
 
   friend bool operator==(const ClassHypothesis&, const ClassHypothesis&) = default;
@@ -102,10 +102,14 @@ struct ClassState {
 ///   y_s = D' + e_s,  var e_s = c_s^2 + p^2/W_s - p^2/W                                                    (B5)
 /// with the places W_s and the shared error c_s of the source. The y_s of faulty sensors is normal with the
 /// standard deviation 2 q beside its errors and the places, and tells nothing about D. Sensors are faulty with
-/// the probability 0.001 if the slip was measured twice, 0.07 if once, 0.5 if they were not verified (ours). Each
-/// combination of faulty sources is
-/// one hypothesis. Its probability is the product of the prior and of the densities of y_s, given those before;
-/// its D the mean by conjugate normal updates. The kMost most probable are kept.
+/// the probability 0.001 if the slip was measured twice, 0.07 if once, 0.5 if they were not verified (ours).
+///
+/// The state of the soil changes with time: D' at two times has the correlation r = e^(-|t2 - t1|/T), with the
+/// correlation time T of the soil (0: r = 1). Sources are taken in order of time, from one to the next
+///   D' -> r D',  var D' -> r^2 var D' + (1 - r^2)(q^2 + p^2/W)                                            (B7)
+/// A source without times counts as the newest. Each combination of faulty sources is one hypothesis. Its
+/// probability is the product of the prior and of the densities of y_s, given those before; its D that of the newest
+/// source, by conjugate normal updates. The kMost most probable are kept.
 class ClassEvidence {
  public:
   explicit ClassEvidence(const GroundClass& ground) : ground_(ground) {}
@@ -126,9 +130,9 @@ class ClassEvidence {
   static constexpr std::size_t kMost = 16;
 
  private:
-  // Sums in units of 2^-20: of the weights, and of weight times departure and shared error.
+  // Sums in units of 2^-20: of the weights, and of weight times departure, shared error and time in days.
   struct Sums {
-    std::int64_t weight = 0, departure = 0, shared = 0;
+    std::int64_t weight = 0, departure = 0, shared = 0, days = 0;
   };
 
   GroundClass ground_;

@@ -209,6 +209,7 @@ struct SourcePull {
   Source source;
   double weight = 0.0;  ///< sum of inverse variances, > 0 [-]
   double pull = 0.0;    ///< mean DP/W, weighted by inverse variance [-]
+  double time_s = 0.0;  ///< telemetry time of the newest reading
   double shared = 0.0;  ///< standard deviation of the error common to all readings of the source [-]
 
   /// Returns the variance of `pull` without the shared error: 1/weight, and the model error 0.02 squared,
@@ -222,9 +223,10 @@ struct SourceReadings {
   static constexpr double kUnit = 1048576.0;  ///< of the sums, per 1
   std::int64_t weight = 0;                    ///< sum of the inverse variances w of the pulls
   std::int64_t pull = 0;                      ///< sum of w DP/W
-  std::int64_t shared = 0;    ///< sum of w times the error common to all readings of the source
-  std::int64_t sinkages = 0;  ///< number of sinkages
-  std::int64_t sinkage = 0;   ///< sum of the sinkages over radius z/r
+  std::int64_t shared = 0;      ///< sum of w times the error common to all readings of the source
+  std::int64_t sinkages = 0;    ///< number of sinkages
+  std::int64_t sinkage = 0;     ///< sum of the sinkages over radius z/r
+  std::uint32_t updated_s = 0;  ///< telemetry time of the newest reading, rounded down [s]
   GroundBound bound{};
 
   /// Adds a pull whose standard deviation counts as at least 0.025, and whose shared error is `shared_std` [-].
@@ -237,12 +239,13 @@ struct SourceReadings {
 
 /// Evidence of one terrain class in a block. A block is a square of cells whose evidence is stored together.
 struct BlockEvidence {
-  std::uint32_t updated_s = 0;  ///< telemetry time of the newest reading, rounded down [s]
-  std::uint8_t reach = 0;       ///< position uncertainty of the readings, in steps of 0.1 m
+  std::uint8_t reach = 0;  ///< position uncertainty of the readings, in steps of 0.1 m
   std::map<Source, SourceReadings> sources{};
 
   /// Returns the position uncertainty of the readings [m].
   double reach_m() const noexcept { return 0.1 * reach; }
+  /// Returns the telemetry time of the newest reading, rounded down [s].
+  std::uint32_t updated_s() const noexcept;
   /// Returns the pulls by source, in ascending order.
   std::vector<SourcePull> pulls() const;
   /// Returns the mean DP/W of all sources [-]; NaN without a reading.

@@ -116,7 +116,7 @@ void JournalDatabase::fail() const {
 
 namespace {
 
-constexpr int kFormat = 10;
+constexpr int kFormat = 11;
 constexpr int kApplication = 0x54414c55;  // "TALU"
 
 // A table or index: type, name and SQL definition.
@@ -138,8 +138,8 @@ const std::vector<Entry>& entriesOfJournal() {
        "REAL,"
        " torque_Nm REAL, sinkage_m REAL, gradient REAL, drawbar_pull_N REAL, pass_index INTEGER,"
        " pull REAL, pull_std REAL, sinkage REAL, sinkage_std REAL, z_m REAL,"
-       " pose_std_m REAL NOT NULL DEFAULT 0, pull_may_raise INTEGER NOT NULL DEFAULT 0,"
-       " sinkage_may_raise INTEGER NOT NULL DEFAULT 0, drive INTEGER, pull_here REAL, sinkage_here REAL, "
+       " pose_std_m REAL NOT NULL DEFAULT 0, trust INTEGER NOT NULL DEFAULT 0,"
+       " drive INTEGER, pull_here REAL, sinkage_here REAL, "
        "pull_shared_std REAL, wheel_radius_m REAL, wheel_width_m REAL, wheel_weight_N REAL, thrust_share "
        "REAL, "
        "drive_tag INTEGER)"},
@@ -207,13 +207,13 @@ constexpr const char* kInsert =
     "INSERT INTO evidence(source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, "
     "sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
+    " trust, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
     "wheel_width_m, wheel_weight_N, thrust_share, drive_tag, drive) "
-    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
+    "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)";
 constexpr const char* kSelect =
     "SELECT source, line, accepted, reason, time_s, x_m, y_m, load_N, slip, torque_Nm, sinkage_m, gradient,"
     " drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, pose_std_m,"
-    " pull_may_raise, sinkage_may_raise, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
+    " trust, pull_here, sinkage_here, pull_shared_std, wheel_radius_m, "
     "wheel_width_m, wheel_weight_N, thrust_share, drive_tag FROM evidence WHERE drive = ? AND id > ? ORDER "
     "BY id";
 
@@ -255,13 +255,13 @@ JournalRow readRow(sqlite3_stmt* row) {
                      .place = out.reading.place,
                      .pull = {number(row, 14), number(row, 15)},
                      .sinkage = {number(row, 16), number(row, 17)},
-                     .shared_std = number(row, 24),
-                     .share = number(row, 28),
+                     .shared_std = number(row, 23),
+                     .share = number(row, 27),
                      .pose_std_m = out.reading.pose_std_m,
                      .trust = static_cast<Trust>(std::clamp(sqlite3_column_int(row, 20), 0, 2)),
-                     .drive = static_cast<std::uint16_t>(sqlite3_column_int(row, 29)),
-                     .here = {number(row, 22), number(row, 23)}};
-  out.wheel = {number(row, 25), number(row, 26), number(row, 27)};
+                     .drive = static_cast<std::uint16_t>(sqlite3_column_int(row, 28)),
+                     .here = {number(row, 21), number(row, 22)}};
+  out.wheel = {number(row, 24), number(row, 25), number(row, 26)};
   return out;
 }
 
@@ -280,7 +280,6 @@ void bindRow(sqlite3_stmt* s, const JournalRow& row, std::int64_t drive) {
   for (const double value : {o.pull.value, o.pull.std, o.sinkage.value, o.sinkage.std, r.z_m, r.pose_std_m})
     bind(s, at++, value);
   sqlite3_bind_int(s, at++, static_cast<int>(o.trust));
-  sqlite3_bind_int(s, at++, o.trust == Trust::Unverified ? 0 : 1);
   bind(s, at++, o.here.most_pull);
   bind(s, at++, o.here.least_sinkage);
   for (const double value :

@@ -24,7 +24,7 @@ void set(const BlockEvidence& own, CellBelief& belief) {
   const double weakest = std::fmin(own.pull(), bound.most_pull);
   belief.evidence_pull = std::isnan(weakest) ? 0.0F : static_cast<float>(weakest);
   belief.evidence_sinkage = static_cast<float>(std::fmax(0.0, std::fmax(own.sinkage(), bound.least_sinkage)));
-  belief.updated_s = own.updated_s;
+  belief.updated_s = own.updated_s();
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ Surface surfaceOf(const TraversabilityMap& map) {
 static_assert(std::endian::native == std::endian::little, "map files require a little-endian machine");
 
 constexpr std::array<char, 8> kMagic{'T', 'A', 'L', 'U', 'S', 'M', 'A', 'P'};
-constexpr std::uint32_t kVersion = 9;
+constexpr std::uint32_t kVersion = 10;
 constexpr std::array<char, 4> kEnd{'E', 'N', 'D', ' '};
 
 std::string versionFault(std::uint32_t version) {

@@ -35,7 +35,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Rover, name, mass_kg, gravity_m_
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Soil, name, cohesion_Pa, friction_angle_rad, sinkage_exponent,
                                                 cohesive_modulus, frictional_modulus, shear_modulus_m, c1, c2,
                                                 density_kg_m3, slip_sinkage_exponent, digging_exponent,
-                                                side_bulldozing, rut_stiffness, test_gravity_m_s2)
+                                                side_bulldozing, rut_stiffness, test_gravity_m_s2,
+                                                correlation_time_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Effect, name, covariate, channel, parameters, knots,
                                                 only_column, only_value)
 }  // namespace talus::terramech
@@ -60,16 +61,16 @@ void to_json(json& to, const SavedBlock& saved) {
   json sources = json::array();
   for (const auto& [source, of] : evidence.sources)
     sources.push_back({source.drive, source.trust, of.weight, of.pull, of.shared, of.sinkages, of.sinkage,
-                       of.bound.most_pull, of.bound.least_sinkage});
-  to = {block.column, block.row, block.terrain_class, evidence.updated_s, evidence.reach, std::move(sources)};
+                       of.updated_s, of.bound.most_pull, of.bound.least_sinkage});
+  to = {block.column, block.row, block.terrain_class, evidence.reach, std::move(sources)};
 }
 
 void from_json(const json& from, SavedBlock& saved) {
   constexpr std::int64_t kMost = std::int64_t{1} << 56;
   auto& [block, evidence] = saved;
   json sources;
-  std::tie(block.column, block.row, block.terrain_class, evidence.updated_s, evidence.reach, sources) =
-      from.get<std::tuple<int, int, std::uint8_t, std::uint32_t, std::uint8_t, json>>();
+  std::tie(block.column, block.row, block.terrain_class, evidence.reach, sources) =
+      from.get<std::tuple<int, int, std::uint8_t, std::uint8_t, json>>();
   for (const json& one : sources) {
     if (one.at(1) > Trust::Twice) throw std::invalid_argument("its evidence is impossible");
     SourceReadings& of = evidence.sources[{one.at(0), one.at(1)}];
@@ -78,8 +79,9 @@ void from_json(const json& from, SavedBlock& saved) {
       one.at(at++).get_to(*sum);
       if (*sum < -kMost || *sum > kMost) throw std::invalid_argument("its evidence is impossible");
     }
-    one.at(7).get_to(of.bound.most_pull);
-    one.at(8).get_to(of.bound.least_sinkage);
+    one.at(7).get_to(of.updated_s);
+    one.at(8).get_to(of.bound.most_pull);
+    one.at(9).get_to(of.bound.least_sinkage);
   }
 }
 

@@ -53,6 +53,7 @@ void validate(const Soil& soil) {
   check.atLeast("side_bulldozing", soil.side_bulldozing, 0.0);
   check.within("rut_stiffness", soil.rut_stiffness, {1.0, 1e3});
   check.within("test_gravity_m_s2", soil.test_gravity_m_s2, {0.0, 1e3});
+  check.within("correlation_time_s", soil.correlation_time_s, {0.0, 1e12});
   // Upper bounds are at least a hundred times the values of any known soil.
   check.within("cohesion_Pa", soil.cohesion_Pa, {0.0, 1e9});
   check.within("sinkage_exponent", soil.sinkage_exponent, {1e-3, 100.0});

@@ -71,6 +71,9 @@ struct Soil {
   /// Gravity in which the soil tests were made [m/s^2], in [0, 1e3]; 0: the gravity at the rover's driving
   /// site. underGravity() uses this value.
   double test_gravity_m_s2 = 0.0;
+  /// Time after which the strength is correlated by 1/e with that before, for example by its moisture [s], in
+  /// [0, 1e12]; 0: the strength does not change with time.
+  double correlation_time_s = 0.0;
 };
 
 /// Returns the soil for a driving site whose gravity g = gravity_m_s2 is lower than the gravity g_test of the

@@ -179,6 +179,7 @@ SoilPrior readSoil(const YamlFields& fields) {
   if (std::abs(soil.mean.c2) > 1.0)
     fields.refuse("c2", "c2 must be -1 to 1: the peak of the stress lies in the contact", "check it");
   soil.mean.test_gravity_m_s2 = fields.number("test_gravity_m_s2", soil.mean.test_gravity_m_s2);
+  soil.mean.correlation_time_s = fields.number("correlation_time_s", soil.mean.correlation_time_s);
   if (soil.mean.cohesive_modulus == 0.0 && soil.mean.frictional_modulus == 0.0)
     fields.refuse("", "lacks cohesive_modulus and frictional_modulus", "add at least one, above 0");
   try {

@@ -37,6 +37,7 @@ std::span<const FileKey> soilKeys() {
       {"test_gravity_m_s2",
        "gravity of the soil's test; in less, cohesion and moduli are less by as much; default 0: that of the "
        "rover"},
+      {"correlation_time_s", "after which the strength is another, 0 to 1e12; default 0: it does not change"},
   };
   return kKeys;
 }

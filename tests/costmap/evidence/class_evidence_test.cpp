@@ -109,12 +109,20 @@ TEST(GaussianProcess, RepeatedPlacesDoNotReduceNeighbourVarianceBelowItsLimit) {
 
 constexpr double kPrior = 0.2, kP = 0.05, kQ = 0.08;
 
-GroundClass sand() {
-  return {.number = 1, .soil = testSand(), .pull_std = kP, .mean_std = kQ};
+constexpr double kDay_s = 86400.0;
+
+GroundClass sand(double correlation_time_s = 0.0) {
+  GroundClass ground{.number = 1, .soil = testSand(), .pull_std = kP, .mean_std = kQ};
+  ground.soil.correlation_time_s = correlation_time_s;
+  return ground;
 }
 
-SourcePull pullOf(std::uint16_t drive, Trust trust, double departure, double shared) {
-  return {.source = {drive, trust}, .weight = 1e9, .pull = kPrior + departure, .shared = shared};
+SourcePull pullOf(std::uint16_t drive, Trust trust, double departure, double shared, double time_s = 0.0) {
+  return {.source = {drive, trust},
+          .weight = 1e9,
+          .pull = kPrior + departure,
+          .time_s = time_s,
+          .shared = shared};
 }
 
 // Number of places as which one block with such a pull counts: less with the probability that it is on another
@@ -140,17 +148,25 @@ TEST(ClassEvidence, WithoutEvidenceIsThePrior) {
 }
 
 // Property: the probability and the mean of each hypothesis are those of the joint normal distribution of the
-// class mean, the driven places and the readings, by brute force over all combinations of faulty drives.
+// class mean, the driven places and the readings, by brute force over all combinations of faulty drives. In every
+// second round the soil changes with time; the drives are out of order, and in some rounds one has no times.
 TEST(ClassEvidence, HypothesesEqualBruteForce) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
   for (int round = 0; round < 30; ++round) {
     std::vector<SourcePull> pulls;
     const int drives = 1 + round % 3;
+    const double changes_s = round % 2 * 30.0 * kDay_s;
     for (int d = 0; d < drives; ++d)
       pulls.push_back(pullOf(static_cast<std::uint16_t>(d), static_cast<Trust>((round + d) % 3),
-                             std::clamp(0.08 * normal(random), -0.15, 0.15), 0.02 + 0.01 * d));
-    ClassEvidence evidence(sand());
+                             std::clamp(0.08 * normal(random), -0.15, 0.15), 0.02 + 0.01 * d,
+                             round % 5 == 4 && d == 1 ? 0.0 : kDay_s * (1000 + (20 - 7 * d) * d)));
+    const auto newest = std::ranges::max(pulls, {}, &SourcePull::time_s).time_s;
+    const auto alike = [&](double a_s, double b_s) {
+      const auto at = [&](double time_s) { return time_s > 0.0 ? time_s : newest; };
+      return changes_s > 0.0 ? std::exp(-std::abs(at(a_s) - at(b_s)) / changes_s) : 1.0;
+    };
+    ClassEvidence evidence(sand(changes_s));
     constexpr int kBlocks = 7;
     for (int b = 0; b < kBlocks; ++b) evidence.count(pulls, kPrior, 1.0, 1);
     const ClassState state = evidence.state();
@@ -178,18 +194,23 @@ TEST(ClassEvidence, HypothesesEqualBruteForce) {
       }
       const auto n = static_cast<Eigen::Index>(sound.size());
       Eigen::MatrixXd covariance(n, n);
-      Eigen::VectorXd y(n);
+      Eigen::VectorXd y(n), with_present(n);
       for (Eigen::Index i = 0; i < n; ++i) {
         const auto drive = static_cast<std::size_t>(sound[static_cast<std::size_t>(i)]);
         y(i) = pulls[drive].pull - kPrior;
+        with_present(i) = kQ * kQ * alike(pulls[drive].time_s, newest);
         for (Eigen::Index j = 0; j < n; ++j)
-          covariance(i, j) = kQ * kQ + kP * kP / places + (i == j ? error[drive] : 0.0);
+          covariance(i, j) =
+              (kQ * kQ + kP * kP / places) *
+                  alike(pulls[drive].time_s,
+                        pulls[static_cast<std::size_t>(sound[static_cast<std::size_t>(j)])].time_s) +
+              (i == j ? error[drive] : 0.0);
       }
       double mean = 0.0;
       if (n > 0) {
         const Eigen::VectorXd solved = covariance.ldlt().solve(y);
         weight *= std::exp(-0.5 * y.dot(solved)) / std::sqrt(covariance.determinant());
-        mean = kQ * kQ * solved.sum();
+        mean = with_present.dot(solved);
       }
       expected.emplace_back(weight, mean);
       sum += weight;
@@ -237,7 +258,8 @@ TEST(ClassEvidence, SumsAreExact) {
 }
 
 // Property: on classes and drives drawn from the model, the posterior mean is unbiased and the truth lies
-// within one and two standard deviations as often as the normal distribution says.
+// within one and two standard deviations as often as the normal distribution says. In every second world the soil
+// changes between the drives.
 TEST(ClassEvidence, PosteriorIsCalibrated) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
@@ -246,20 +268,25 @@ TEST(ClassEvidence, PosteriorIsCalibrated) {
   int one = 0, two = 0;
   constexpr int kWorlds = 3000, kBlocks = 12;
   for (int world = 0; world < kWorlds; ++world) {
-    const double truth = kQ * normal(random);
-    ClassEvidence evidence(sand());
+    const double days = world / 3 % 2 * 30.0, r = days > 0.0 ? std::exp(-10.0 / days) : 1.0;
+    double truth = kQ * normal(random);
+    ClassEvidence evidence(sand(days * kDay_s));
     const int drives = 1 + world % 3;
-    std::vector<double> error, faulty;
+    std::vector<double> error, faulty, ground;
     for (int d = 0; d < drives; ++d) {
+      if (d > 0) truth = r * truth + std::sqrt(1.0 - r * r) * kQ * normal(random);
+      ground.push_back(truth);
       faulty.push_back(uniform(random) < 0.07 ? 1.0 : 0.0);
       error.push_back(faulty.back() > 0.0 ? 2.0 * kQ * normal(random) : 0.02 * normal(random));
     }
     for (int b = 0; b < kBlocks; ++b) {
-      const double place = truth + kP * normal(random);
+      const double place = kP * normal(random);
       std::vector<SourcePull> pulls;
       for (std::size_t d = 0; d < error.size(); ++d)
-        pulls.push_back(pullOf(static_cast<std::uint16_t>(d), Trust::Once,
-                               faulty[d] > 0.0 ? error[d] : place + error[d] + 0.02 * normal(random), 0.02));
+        pulls.push_back(
+            pullOf(static_cast<std::uint16_t>(d), Trust::Once,
+                   faulty[d] > 0.0 ? error[d] : ground[d] + place + error[d] + 0.02 * normal(random), 0.02,
+                   kDay_s * (100.0 + 10.0 * static_cast<double>(d))));
       evidence.count(pulls, kPrior, 1.0, 1);
     }
     const ClassState state = evidence.state();

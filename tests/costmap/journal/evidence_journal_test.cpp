@@ -72,7 +72,7 @@ void change(const std::string& path, const char* sql) {
 }
 
 TEST_F(EvidenceJournalTest, UnknownFormatsAreRejectedWithOneLine) {
-  for (const int format : {1, 3, 8, 11}) {
+  for (const int format : {1, 3, 8, 10}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append(kIdA, {row(7)}); }
     change(path(), ("PRAGMA user_version = " + std::to_string(format)).c_str());
@@ -82,7 +82,7 @@ TEST_F(EvidenceJournalTest, UnknownFormatsAreRejectedWithOneLine) {
     } catch (const InputError& error) {
       EXPECT_EQ(error.what(),
                 path() + ": an evidence journal of format " + std::to_string(format) +
-                    "; this program reads 10; name another journal and put the telemetry into it again with "
+                    "; this program reads 11; name another journal and put the telemetry into it again with "
                     "talus update");
     }
   }
@@ -134,7 +134,7 @@ TEST_F(EvidenceJournalTest, ModifiedRowsAreRejected) {
         "torque_Nm,"
         " sinkage_m, gradient, drawbar_pull_N, pass_index, pull, pull_std, sinkage, sinkage_std, z_m, "
         "pose_std_m,"
-        " pull_may_raise, sinkage_may_raise, drive, pull_here, sinkage_here, pull_shared_std, wheel_radius_m,"
+        " trust, drive, pull_here, sinkage_here, pull_shared_std, wheel_radius_m,"
         " wheel_width_m, wheel_weight_N, thrust_share, drive_tag FROM evidence"}) {
     std::filesystem::remove(path());
     { EvidenceJournal(path()).append(kIdA, {row(7)}); }

@@ -176,7 +176,7 @@ TEST(MapFile, OtherVersionIsRejectedNamingBothVersions) {
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                testing::HasSubstr("map of version 3; this program reads version 9; write the map again"));
+                testing::HasSubstr("map of version 3; this program reads version 10; write the map again"));
   }
 }
 
