@@ -18,6 +18,13 @@ void refuseEmptyValues(CLI::App& program);
 /// hexadecimal or octal. Throws InputError with the name of the option.
 void checkNumbers(const CLI::App& command);
 
+/// Adds an option or argument to a command. `name` ends in the name of its value, after a blank: "--rover ROVER".
+template <typename T>
+CLI::Option* addOption(CLI::App& command, const std::string& name, T& value, const std::string& text) {
+  const std::size_t blank = name.find(' ');
+  return command.add_option(name.substr(0, blank), value, text)->type_name(name.substr(blank + 1));
+}
+
 /// Returns a check that rejects numbers outside [low, high], infinities and NaN. With an infinite `high`, or
 /// both ends infinite, the numbers have no bound at that end.
 CLI::Validator within(double low, double high);

@@ -19,6 +19,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
@@ -180,9 +181,9 @@ bool leavesItsFolder(const fs::path& link) {
 
 }  // namespace
 
-CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
+CLI::Option* addOutput(CLI::App& command, const std::string& name, std::string& path,
                        const std::string& text) {
-  return command.add_option(names, path, text)
+  return addOption(command, name, path, text)
       ->check(CLI::Validator([](std::string&) { return std::string(); }, "", kMark));
 }
 

@@ -30,9 +30,8 @@ class FileLock {
   std::vector<int> held_;
 };
 
-/// Declares an option for an output file, which checkOutputs() checks. `names` are the names of the option,
-/// and `text` is its description.
-CLI::Option* addOutput(CLI::App& command, const std::string& names, std::string& path,
+/// Declares an option for an output file, as addOption() does, which checkOutputs() checks.
+CLI::Option* addOutput(CLI::App& command, const std::string& name, std::string& path,
                        const std::string& text);
 
 /// Checks that an output path does not require --force. Throws InputError for one of the `inputs`, a journal,

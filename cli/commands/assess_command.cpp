@@ -23,12 +23,10 @@ struct AssessCommand : AssessOptions {
 };
 
 void bind(CLI::App& command, AssessCommand& options) {
-  command.add_option("table", options.table.path, "wheel telemetry, one row per wheel and moment")
-      ->required()
-      ->type_name("T.csv");
-  command.add_option("--slope", options.slope_rad, "slope to climb")->type_name("RAD")->capture_default_str();
-  command.add_option("--slope-uncertainty", options.margin_rad, "uncertainty of the slope, plus or minus")
-      ->type_name("RAD")
+  addOption(command, "table T.csv", options.table.path, "wheel telemetry, one row per wheel and moment")
+      ->required();
+  addOption(command, "--slope RAD", options.slope_rad, "slope to climb")->capture_default_str();
+  addOption(command, "--slope-uncertainty RAD", options.margin_rad, "uncertainty of the slope, plus or minus")
       ->capture_default_str();
   command.add_option("--z-threshold", options.z_threshold, "z/r above which the category drops one level")
       ->capture_default_str();
@@ -52,8 +50,8 @@ void bind(CLI::App& command, AssessCommand& options) {
       .add_option("--reference-slip", options.reference_slip, "reference slip of --extrapolate (thesis 3.5)")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
-      ->type_name("NAME|FILE");
+  addOption(command, "--rover NAME|FILE", options.rover,
+            "rover that supplies wheel dimensions missing from the file");
   command.add_option("--noise", options.noise, "relative standard deviation of each reading")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();

@@ -43,38 +43,30 @@ void bind(CLI::App& command, BenchOptions& options) {
                   "route, but those with "
                   ":cold; NAME:range=20 sets a parameter by OMPL's name")
       ->delimiter(',');
-  command.add_option("--plugin", options.plugins, "planner plugin to compare, too; may be repeated")
-      ->type_name("FILE.so");
+  addOption(command, "--plugin FILE.so", options.plugins, "planner plugin to compare, too; may be repeated");
   command.add_option("--runs", options.runs, "runs per case and planner, each with its own seed")
       ->check(positive())
       ->capture_default_str();
-  command.add_option("--time", options.time_limit_s, "time limit of one run")
-      ->type_name("S")
+  addOption(command, "--time S", options.time_limit_s, "time limit of one run")
       ->check(positive())
       ->capture_default_str();
   command.add_option("--pairs", options.suite.pairs, "start and goal pairs per map")
       ->check(positive())
       ->capture_default_str();
-  command
-      .add_option("--turning-radius", options.suite.turning_radius_m,
-                  "minimum turning radius of planners with kinematics; 0: the rover turns in place (default: "
-                  "the rover's)")
-      ->type_name("METRES")
+  addOption(command, "--turning-radius METRES", options.suite.turning_radius_m,
+            "minimum turning radius of planners with kinematics; 0: the rover turns in place (default: "
+            "the rover's)")
       ->check(turningRadius());
   command.add_option("--side", options.suite.side_cells, "side of a generated site, in cells")
       ->check(CLI::Range(32, 10000))
       ->capture_default_str();
-  command
-      .add_option(
-          "--part", options.part,
-          "run part K of N alone, and keep its results in the folder; the call that finds the last part "
-          "there writes the comparison")
-      ->type_name("K/N");
+  addOption(command, "--part K/N", options.part,
+            "run part K of N alone, and keep its results in the folder; the call that finds the last part "
+            "there writes the comparison");
   groupOptions(command, "Cases and runs");
   addReadOptions(command, options.suite.ground.elevation);
   addGroundChoices(command, options.suite.ground);
-  command.add_option("-o,--output", options.folder, "folder for the OMPL logs, the table and the page")
-      ->type_name("FOLDER")
+  addOption(command, "-o,--output FOLDER", options.folder, "folder for the OMPL logs, the table and the page")
       ->capture_default_str();
   groupOptions(command, "Output");
 }

@@ -25,7 +25,7 @@ struct CheckOptions {
 };
 
 void bind(CLI::App& command, CheckOptions& options) {
-  command.add_option("file", options.file, "cases to run")->required()->type_name("FILE.yaml");
+  addOption(command, "file FILE.yaml", options.file, "cases to run")->required();
 }
 
 // The call of a case: talus OPERATION ARGUMENTS --KEY=VALUE, for each key of `input`; true is a flag.

@@ -34,23 +34,19 @@ struct CostmapOptions {
 
 void bind(CLI::App& command, CostmapOptions& options) {
   addGroundOptions(command, options.ground);
-  addOutput(command, "-o,--output", options.output, "traversability map to write")->type_name("MAP.ot");
-  addOutput(command, "--geotiff", options.geotiff,
-            "GeoTIFF of layers to write, and FILE.qml beside it: the style of allowed_headings for QGIS")
-      ->type_name("FILE.tif");
-  addOutput(command, "--categories", options.categories,
+  addOutput(command, "-o,--output MAP.ot", options.output, "traversability map to write");
+  addOutput(command, "--geotiff FILE.tif", options.geotiff,
+            "GeoTIFF of layers to write, and FILE.qml beside it: the style of allowed_headings for QGIS");
+  addOutput(command, "--categories FILE.tif", options.categories,
             "GeoTIFF of the categories to write, with names, colours and overviews, and FILE.qml beside it: "
-            "the style that QGIS reads by itself")
-      ->type_name("FILE.tif");
+            "the style that QGIS reads by itself");
   addOutput(
-      command, "--nav2", options.nav2,
-      "map of ROS' map_server to write, and FILE.pgm beside it: free where safe, or marginal and allowed")
-      ->type_name("FILE.yaml");
-  addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
-  addOutput(command, "--octovis", options.octovis, "ColorOcTree to write, for display in octovis")
-      ->type_name("FILE.ot");
-  addOutput(command, "--unsafe", options.unsafe, "polygons to write of the ground that no heading may enter")
-      ->type_name("AREA.gpkg");
+      command, "--nav2 FILE.yaml", options.nav2,
+      "map of ROS' map_server to write, and FILE.pgm beside it: free where safe, or marginal and allowed");
+  addOutput(command, "--png FILE.png", options.png, "picture to write");
+  addOutput(command, "--octovis FILE.ot", options.octovis, "ColorOcTree to write, for display in octovis");
+  addOutput(command, "--unsafe AREA.gpkg", options.unsafe,
+            "polygons to write of the ground that no heading may enter");
   groupOptions(command, "Output");
 }
 

@@ -58,10 +58,9 @@ void bindSensors(CLI::App& command, DriveCommandOptions& options) {
   command.add_option("--fault", options.fault, "sensor fault during the whole traverse")
       ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())))
       ->capture_default_str();
-  command
-      .add_option("--pose-drift", options.sensors.pose_drift, "drift of the estimated pose per metre driven")
+  addOption(command, "--pose-drift SHARE", options.sensors.pose_drift,
+            "drift of the estimated pose per metre driven")
       ->check(CLI::Range(0.0, planner::kMostPoseDrift))
-      ->type_name("SHARE")
       ->capture_default_str();
   command.add_option("--noise", options.noise, "noise and dropouts of slip, torque and sinkage")
       ->check(CLI::IsMember({"on", "off"}))
@@ -79,13 +78,12 @@ planner::SensorOptions sensorsOf(const DriveCommandOptions& options) {
 
 void bind(CLI::App& command, DriveCommandOptions& options) {
   addGroundOptions(command, options.ground);
-  command.add_option("--truth", options.truth, "true soils, soft patches and random variation; format below")
-      ->required()
-      ->type_name("TRUTH.yaml");
-  command.add_option("--start", options.start, "start of the traverse (format as in `talus plan --help`)")
-      ->required()
-      ->type_name("P");
-  command.add_option("--goal", options.goal, "goal of the traverse")->required()->type_name("P");
+  addOption(command, "--truth TRUTH.yaml", options.truth,
+            "true soils, soft patches and random variation; format below")
+      ->required();
+  addOption(command, "--start P", options.start, "start of the traverse (format as in `talus plan --help`)")
+      ->required();
+  addOption(command, "--goal P", options.goal, "goal of the traverse")->required();
   command
       .add_option(
           "--belief", options.belief,
@@ -94,12 +92,9 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
           "`all` compares the five in the same worlds")
       ->check(CLI::Validator(refusedBelief, "{geometry,along-only,prior,online,perfect-knowledge,all}"))
       ->capture_default_str();
-  auto* worlds =
-      command
-          .add_option("--worlds", options.worlds,
-                      "number of random worlds; --threads run at a time, or one per rank under mpirun")
-          ->check(CLI::Range(1, 100000))
-          ->type_name("N");
+  auto* worlds = addOption(command, "--worlds N", options.worlds,
+                           "number of random worlds; --threads run at a time, or one per rank under mpirun")
+                     ->check(CLI::Range(1, 100000));
   auto* part = command.add_option("--part", options.part,
                                   "simulate part K of N of the worlds alone, and keep its results in the "
                                   "folder; the call that finds the last part there prints the rates");
@@ -108,15 +103,13 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
   addPluginTime(command, options.time_limit_s);
   bindSensors(command, options);
   groupOptions(command, "Simulation");
-  addOutput(command, "--html", options.html, "page to write: the simulated traverse with a time slider")
-      ->type_name("R.html")
+  addOutput(command, "--html R.html", options.html,
+            "page to write: the simulated traverse with a time slider")
       ->excludes(worlds);
-  addOutput(command, "--telemetry", options.telemetry,
+  addOutput(command, "--telemetry T.csv", options.telemetry,
             "simulated wheel telemetry to write, for `talus update`")
-      ->type_name("T.csv")
       ->excludes(worlds);
-  command.add_option("-o,--output", options.folder, "folder for the results of the parts")
-      ->type_name("FOLDER")
+  addOption(command, "-o,--output FOLDER", options.folder, "folder for the results of the parts")
       ->capture_default_str()
       ->needs(part);
   groupOptions(command, "Output");

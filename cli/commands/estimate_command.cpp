@@ -28,41 +28,33 @@ struct EstimateCommand : EstimateOptions {
 };
 
 void bind(CLI::App& command, EstimateCommand& options) {
-  command.add_option("table", options.table.path, "wheel telemetry, or plate and shear tests for bevameter")
-      ->required()
-      ->type_name("T.csv");
+  addOption(command, "table T.csv", options.table.path,
+            "wheel telemetry, or plate and shear tests for bevameter")
+      ->required();
   command.add_option("--method", options.method, "estimation method")
       ->required()
       ->check(CLI::IsMember(estimateMethods()));
-  command
-      .add_option("--shear-modulus", options.shear_modulus,
-                  "K in metres, or the method that finds it: error-minimisation, effective-torque, "
-                  "effective-torque-printed or joint (default: the file's shear_modulus_m, else the prior's, "
-                  "else joint; wong-reece infers it)")
-      ->type_name("M|HOW")
+  addOption(command, "--shear-modulus M|HOW", options.shear_modulus,
+            "K in metres, or the method that finds it: error-minimisation, effective-torque, "
+            "effective-torque-printed or joint (default: the file's shear_modulus_m, else the prior's, "
+            "else joint; wong-reece infers it)")
       ->check([](const std::string& word) -> std::string {
         if (std::ranges::find(modulusMethods(), word) != modulusMethods().end()) return {};
         return CLI::Number(word).empty()
                    ? std::string()
                    : "'" + word + "' is neither a length in metres nor a method that finds K";
       });
-  command
-      .add_option(
-          "--prior", options.prior,
-          "prior soils with {mean, std} (default: thesis Table 2.1 for wong-reece, none for other methods)")
-      ->type_name("NAME|FILE");
-  command
-      .add_option("--model", options.model,
-                  "refined model; its effects on sinkage, torque and drawbar pull are modelled and not "
-                  "attributed to the soil (wong-reece)")
-      ->type_name("M.yaml");
-  command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
-      ->type_name("NAME|FILE");
-  command
-      .add_option("--plate-width", options.plate_width_m,
-                  "plate width b where it is missing from the file (bevameter)")
-      ->check(CLI::Range(1e-3, 10.0))
-      ->type_name("M");
+  addOption(
+      command, "--prior NAME|FILE", options.prior,
+      "prior soils with {mean, std} (default: thesis Table 2.1 for wong-reece, none for other methods)");
+  addOption(command, "--model M.yaml", options.model,
+            "refined model; its effects on sinkage, torque and drawbar pull are modelled and not "
+            "attributed to the soil (wong-reece)");
+  addOption(command, "--rover NAME|FILE", options.rover,
+            "rover that supplies wheel dimensions missing from the file");
+  addOption(command, "--plate-width M", options.plate_width_m,
+            "plate width b where it is missing from the file (bevameter)")
+      ->check(CLI::Range(1e-3, 10.0));
   command.add_option("--noise", options.noise, "relative standard deviation of each reading (wong-reece)")
       ->check(CLI::Range(1e-4, 0.5))
       ->capture_default_str();
@@ -70,7 +62,7 @@ void bind(CLI::App& command, EstimateCommand& options) {
                    "process the rows one by one in constant memory; print the estimate after each row");
   groupOptions(command, "Method");
   addTableOptions(command, options.columns);
-  addOutput(command, "--html", options.html, "page to write, with the fit")->type_name("R.html");
+  addOutput(command, "--html R.html", options.html, "page to write, with the fit");
   groupOptions(command, "Output");
 }
 

@@ -26,11 +26,9 @@ struct ExplainOptions {
 
 void bind(CLI::App& command, ExplainOptions& options) {
   addGroundOptions(command, options.ground);
-  command
-      .add_option("--at", options.at,
-                  "place: x,y in map metres; lat,lon with the suffix d on each; or a vector file")
-      ->required()
-      ->type_name("P");
+  addOption(command, "--at P", options.at,
+            "place: x,y in map metres; lat,lon with the suffix d on each; or a vector file")
+      ->required();
   addHeading(command, "--heading", options.heading_rad,
              "heading, counter-clockwise from east (default: the worst heading)");
   command.add_flag(

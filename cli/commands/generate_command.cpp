@@ -148,13 +148,11 @@ void bind(CLI::App& command, GenerateOptions& options) {
       .add_option("KIND", options.site,
                   "craters (Moon), dunes or rocks (Mars), or a YAML description (see maps/sites)")
       ->required();
-  command.add_option("--size", options.size, "side in cells, or WIDTHxHEIGHT (default: 512)")->type_name("N");
-  command.add_option("--resolution", options.resolution_m, "cell size (default: 1)")
-      ->type_name("METRES")
+  addOption(command, "--size N", options.size, "side in cells, or WIDTHxHEIGHT (default: 512)");
+  addOption(command, "--resolution METRES", options.resolution_m, "cell size (default: 1)")
       ->check(CLI::Range(0.01, 1000.0));
-  addOutput(command, "-o,--output", options.output,
+  addOutput(command, "-o,--output FILE.tif", options.output,
             "elevation map to write; its layers are written to the same folder")
-      ->type_name("FILE.tif")
       ->required();
 }
 

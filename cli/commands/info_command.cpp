@@ -69,10 +69,8 @@ std::string infoText(const maps::ElevationMap& map, const nlohmann::ordered_json
 
 void bind(CLI::App& command, InfoOptions& options) {
   addMapOptions(command, options.map);
-  command
-      .add_option("--footprint", options.footprint_m,
-                  "radius of the disc over which slope is computed (default: 3 x 3 cells)")
-      ->type_name("METRES");
+  addOption(command, "--footprint METRES", options.footprint_m,
+            "radius of the disc over which slope is computed (default: 3 x 3 cells)");
 }
 
 int run(const InfoOptions& options, Context& context) {

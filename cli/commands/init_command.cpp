@@ -27,9 +27,7 @@ struct InitOptions {
 
 void bind(CLI::App& command, InitOptions& options) {
   addMapOptions(command, options.map);
-  addOutput(command, "-o,--output", options.output, "mission to write")
-      ->type_name("MISSION.yaml")
-      ->capture_default_str();
+  addOutput(command, "-o,--output MISSION.yaml", options.output, "mission to write")->capture_default_str();
   groupOptions(command, "Output");
 }
 

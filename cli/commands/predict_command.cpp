@@ -18,19 +18,16 @@ struct PredictOptions {
 };
 
 void bind(CLI::App& command, PredictOptions& options) {
-  command.add_option("telemetry", options.table, "operating conditions, one row each: load_N, slip, ...")
-      ->required()
-      ->type_name("T.csv");
-  command.add_option("--model", options.model, "refined or base model, or a soil")
-      ->required()
-      ->type_name("M.yaml");
-  command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
-      ->type_name("NAME|FILE");
+  addOption(command, "telemetry T.csv", options.table,
+            "operating conditions, one row each: load_N, slip, ...")
+      ->required();
+  addOption(command, "--model M.yaml", options.model, "refined or base model, or a soil")->required();
+  addOption(command, "--rover NAME|FILE", options.rover,
+            "rover that supplies wheel dimensions missing from the file");
   groupOptions(command, "Model");
   addTableOptions(command, options.columns);
-  addOutput(command, "-o,--output", options.output, "rows to write, with predictions appended")
-      ->required()
-      ->type_name("OUT.csv");
+  addOutput(command, "-o,--output OUT.csv", options.output, "rows to write, with predictions appended")
+      ->required();
 }
 
 int run(const PredictOptions& options, Context& context) {

@@ -183,12 +183,10 @@ void addGlobalOptions(CLI::App& app, Context& context) {
       ->transform(decimalSize())
       ->check(enoughMemory())
       ->type_name("SIZE");
-  app.add_option("--seed", context.seed, "seed of the random numbers")
+  addOption(app, "--seed N", context.seed, "seed of the random numbers")
       ->check(within(0.0, kGreatestSeed))
-      ->type_name("N")
       ->capture_default_str();
-  app.add_option("--threads", context.threads, "maximum number of threads (default: one per core)")
-      ->type_name("N")
+  addOption(app, "--threads N", context.threads, "maximum number of threads (default: one per core)")
       ->check(CLI::Range(1, 1024));
   app.fallthrough();
   app.require_subcommand(1);

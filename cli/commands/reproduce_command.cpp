@@ -13,22 +13,18 @@ namespace talus::cli {
 namespace {
 
 void bind(CLI::App& command, ReproduceOptions& options) {
-  command.add_option("-o,--output", options.output, "folder for validation.md and validation/*.png")
-      ->type_name("DIR")
+  addOption(command, "-o,--output DIR", options.output, "folder for validation.md and validation/*.png")
       ->capture_default_str();
   auto* published = command.add_flag("--published", options.published,
                                      "only rebuild published results: theirs, ours, error, source");
-  command.add_option("name", options.published_name, "one published result (default: all)")
-      ->needs(published)
-      ->type_name("NAME");
+  addOption(command, "name NAME", options.published_name, "one published result (default: all)")
+      ->needs(published);
   command.add_flag("--goals", options.goals_only, "only measure the estimators and print the table");
   command.add_option("--soils", options.soils, "number of soils sampled from thesis Table 2.1")
       ->check(CLI::Range(8, 100000))
       ->capture_default_str();
-  command
-      .add_option("--measured", options.measured,
-                  "CSV of measured load, torque, sinkage, slip and drawbar pull")
-      ->type_name("M.csv");
+  addOption(command, "--measured M.csv", options.measured,
+            "CSV of measured load, torque, sinkage, slip and drawbar pull");
 }
 
 // Path of talus-reproduce: beside this program, in the build folder, or in libexec of an installation.

@@ -66,15 +66,12 @@ std::string scoreText(const Score& s) {
 void bind(CLI::App& command, ScoreOptions& options) {
   addGroundOptions(command, options.ground);
   addCostCurve(command, options.ground);
-  command
-      .add_option("--path", options.path,
-                  "polyline: a line of a vector file, or CSV with x_m, y_m or lat, lon")
-      ->type_name("FILE");
+  addOption(command, "--path FILE", options.path,
+            "polyline: a line of a vector file, or CSV with x_m, y_m or lat, lon");
   addPluginOption(command, options.plugin);
-  command
-      .add_option("--start", options.start, "start of the plugin's route (format as in `talus plan --help`)")
-      ->type_name("PLACE");
-  command.add_option("--goal", options.goal, "goal of the plugin's route")->type_name("PLACE");
+  addOption(command, "--start PLACE", options.start,
+            "start of the plugin's route (format as in `talus plan --help`)");
+  addOption(command, "--goal PLACE", options.goal, "goal of the plugin's route");
   addPluginTime(command, options.time_limit_s);
   addChassisOption(command, options.chassis);
   command.add_flag("--prove", options.prove,

@@ -28,54 +28,38 @@ struct TraceCommandOptions {
 };
 
 void bind(CLI::App& command, TraceCommandOptions& options) {
-  command.add_option("telemetry", options.telemetry, "measured wheel telemetry")
-      ->required()
-      ->type_name("T.csv");
-  command.add_option("--base", options.base, "base soil or model (default: a soil fitted to the data)")
-      ->type_name("B.yaml");
-  command
-      .add_option(
-          "--formula", options.formula,
-          "trace this formula, linear in its parameters, in place of a wheel model; a table of runs over "
-          "time has distance_m, height_m, turning_rad, cross_slope_m, time_s, charge_As and energy_J")
-      ->type_name("'Y = a*X + b*Z'");
-  command.add_option("--rover", options.rover, "rover that supplies wheel dimensions missing from the file")
-      ->type_name("NAME|FILE");
+  addOption(command, "telemetry T.csv", options.telemetry, "measured wheel telemetry")->required();
+  addOption(command, "--base B.yaml", options.base,
+            "base soil or model (default: a soil fitted to the data)");
+  addOption(command, "--formula 'Y = a*X + b*Z'", options.formula,
+            "trace this formula, linear in its parameters, in place of a wheel model; a table of runs over "
+            "time has distance_m, height_m, turning_rad, cross_slope_m, time_s, charge_As and energy_J");
+  addOption(command, "--rover NAME|FILE", options.rover,
+            "rover that supplies wheel dimensions missing from the file");
   command
       .add_option("--significance", options.significance,
                   "share of tables without an effect in which one may be found")
       ->check(CLI::Range(1e-3, 0.5))
       ->capture_default_str();
   auto* hold_out =
-      command
-          .add_option(
-              "--hold-out", options.hold_out,
-              "trace without these rows, then predict them: each level of a column in turn, or its values "
-              "V,V or LOW..HIGH; a value that holds a comma in double quotes")
-          ->type_name("COLUMN[=VALUES]");
-  auto* propose = command
-                      .add_option("--propose", options.propose,
-                                  "runs to make next: where the causes that are left predict most apart")
+      addOption(command, "--hold-out COLUMN[=VALUES]", options.hold_out,
+                "trace without these rows, then predict them: each level of a column in turn, or its values "
+                "V,V or LOW..HIGH; a value that holds a comma in double quotes");
+  auto* propose = addOption(command, "--propose N", options.propose,
+                            "runs to make next: where the causes that are left predict most apart")
                       ->check(CLI::Range(1, 20))
-                      ->excludes(hold_out)
-                      ->type_name("N");
-  command
-      .add_option("--score", options.score,
-                  "measured runs, such as a proposed table with its empty columns filled: what they say of "
-                  "each cause")
-      ->excludes(hold_out)
-      ->type_name("RUNS.csv");
+                      ->excludes(hold_out);
+  addOption(command, "--score RUNS.csv", options.score,
+            "measured runs, such as a proposed table with its empty columns filled: what they say of "
+            "each cause")
+      ->excludes(hold_out);
   groupOptions(command, "Analysis");
   addTableOptions(command, options.columns);
-  addOutput(command, "--model-out", options.model_out, "refined model to write")
-      ->excludes(hold_out)
-      ->type_name("M.yaml");
-  addOutput(command, "--html", options.html, "page to write, with charts")
-      ->type_name("R.html")
-      ->excludes(hold_out);
-  addOutput(command, "-o,--output", options.runs_out, "proposed runs to write, with what each cause predicts")
-      ->needs(propose)
-      ->type_name("RUNS.csv");
+  addOutput(command, "--model-out M.yaml", options.model_out, "refined model to write")->excludes(hold_out);
+  addOutput(command, "--html R.html", options.html, "page to write, with charts")->excludes(hold_out);
+  addOutput(command, "-o,--output RUNS.csv", options.runs_out,
+            "proposed runs to write, with what each cause predicts")
+      ->needs(propose);
   groupOptions(command, "Output");
 }
 

@@ -39,14 +39,11 @@ struct UpdateOptions {
 };
 
 void bind(CLI::App& command, UpdateOptions& options) {
-  command.add_option("MAP", options.map, "traversability map from `talus costmap`")
-      ->required()
-      ->type_name("MAP.ot");
-  command.add_option("TELEMETRY", options.telemetry, "wheel telemetry")->type_name("T.csv");
-  addOutput(command, "-o,--output", options.output, "map to write")->type_name("MAP2.ot");
-  auto* journal =
-      command.add_option("--journal", options.journal, "SQLite journal of every row, accepted or rejected")
-          ->type_name("EVIDENCE.db");
+  addOption(command, "MAP MAP.ot", options.map, "traversability map from `talus costmap`")->required();
+  addOption(command, "TELEMETRY T.csv", options.telemetry, "wheel telemetry");
+  addOutput(command, "-o,--output MAP2.ot", options.output, "map to write");
+  auto* journal = addOption(command, "--journal EVIDENCE.db", options.journal,
+                            "SQLite journal of every row, accepted or rejected");
   command
       .add_option("--pose-error", options.intake.pose_std_m,
                   "standard deviation of x_m and y_m if there is no column pose_std_m [m]")
@@ -54,13 +51,11 @@ void bind(CLI::App& command, UpdateOptions& options) {
       ->capture_default_str();
   command.add_flag("--replay", options.replay, "replay the whole journal instead of a telemetry file")
       ->needs(journal);
-  command.add_option("--join", options.joined, "journal of another rover, whose drives --journal receives")
-      ->needs(journal)
-      ->type_name("OTHER.db");
-  command
-      .add_option("--without", options.without,
-                  "id of a drive (--list) to leave out of the map, as if never put in")
-      ->type_name("DRIVE");
+  addOption(command, "--join OTHER.db", options.joined,
+            "journal of another rover, whose drives --journal receives")
+      ->needs(journal);
+  addOption(command, "--without DRIVE", options.without,
+            "id of a drive (--list) to leave out of the map, as if never put in");
   command.add_flag("--list", options.list,
                    "list the drives of the map: sensors, what each taught, where ground rose or fell");
   groupOptions(command, "Evidence");

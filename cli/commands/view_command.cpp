@@ -44,19 +44,14 @@ void bind(CLI::App& command, ViewOptions& options) {
   addMapOptions(command, options.file, "FILE");
   command.get_option("FILE")->description(
       "route from `talus plan`, mission, traversability map, or elevation map");
-  command.add_option("ROUTE", options.others, "further routes, compared with the first one")
-      ->type_name("ROUTE ...");
-  command
-      .add_option(
-          "--map", options.map,
-          "map of a route (default: the map it was planned on, searched by its path and its name from the "
-          "folder of the route and from the current folder)")
-      ->type_name("MAP");
-  command.add_option("--title", options.title, "title of the page")->type_name("TEXT");
-  addOutput(command, "-o,--html", options.html,
-            "page to write (default: FILE with the ending .html in the current folder)")
-      ->type_name("PAGE.html");
-  addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
+  addOption(command, "ROUTE ROUTE ...", options.others, "further routes, compared with the first one");
+  addOption(command, "--map MAP", options.map,
+            "map of a route (default: the map it was planned on, searched by its path and its name from the "
+            "folder of the route and from the current folder)");
+  addOption(command, "--title TEXT", options.title, "title of the page");
+  addOutput(command, "-o,--html PAGE.html", options.html,
+            "page to write (default: FILE with the ending .html in the current folder)");
+  addOutput(command, "--png FILE.png", options.png, "picture to write");
   addImageOption(command, options.image);
   groupOptions(command, "Page");
 }

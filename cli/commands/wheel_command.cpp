@@ -27,51 +27,36 @@ struct WheelOptions {
 };
 
 void bind(CLI::App& command, WheelOptions& options) {
-  auto* soil = command.add_option("--soil", options.soil, "soil: a library name or a YAML file")
-                   ->type_name("NAME|FILE");
-  auto* rover =
-      command.add_option("--rover", options.rover, "rover with the wheel: a library name or a YAML file")
-          ->type_name("NAME|FILE");
-  auto* load = command.add_option("--load", options.load_N, "wheel load [N] (default: the rover's)")
-                   ->type_name("N")
+  auto* soil = addOption(command, "--soil NAME|FILE", options.soil, "soil: a library name or a YAML file");
+  auto* rover = addOption(command, "--rover NAME|FILE", options.rover,
+                          "rover with the wheel: a library name or a YAML file");
+  auto* load = addOption(command, "--load N", options.load_N, "wheel load [N] (default: the rover's)")
                    ->check(finite());
-  auto* slip = command.add_option("--slip", options.slip, "slip, from -1 (locked) to 1 (spinning in place)")
-                   ->type_name("I")
+  auto* slip = addOption(command, "--slip I", options.slip, "slip, from -1 (locked) to 1 (spinning in place)")
                    ->check(within(-1.0, 1.0));
-  auto* angle = command
-                    .add_option("--slip-angle", options.slip_angle_rad,
-                                "slip angle [rad] from the wheel plane to the travel, left positive")
-                    ->type_name("RAD")
+  auto* angle = addOption(command, "--slip-angle RAD", options.slip_angle_rad,
+                          "slip angle [rad] from the wheel plane to the travel, left positive")
                     ->check(within(-0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
   groupOptions(command, "One wheel");
-  auto* inflation = command
-                        .add_option("--inflation", options.inflation_Pa,
-                                    "inflation pressure of a pneumatic tyre of the wheel's size [Pa]")
-                        ->type_name("PA")
+  auto* inflation = addOption(command, "--inflation PA", options.inflation_Pa,
+                              "inflation pressure of a pneumatic tyre of the wheel's size [Pa]")
                         ->check(notNegative());
-  auto* carcass = command
-                      .add_option("--carcass", options.carcass_Pa,
-                                  "stiffness of its carcass as a pressure [Pa] (default: 0)")
-                      ->type_name("PA")
+  auto* carcass = addOption(command, "--carcass PA", options.carcass_Pa,
+                            "stiffness of its carcass as a pressure [Pa] (default: 0)")
                       ->check(notNegative())
                       ->needs(inflation);
   auto* hard =
       command.add_flag("--hard-ground", options.hard_ground, "on rigid flat ground instead of a soil");
-  auto* torque = command
-                     .add_option("--torque", options.torque_Nm,
-                                 "torque of a rigid wheel on hard ground [Nm], in place of --slip")
-                     ->type_name("NM")
+  auto* torque = addOption(command, "--torque NM", options.torque_Nm,
+                           "torque of a rigid wheel on hard ground [Nm], in place of --slip")
                      ->check(finite())
                      ->needs(hard)
                      ->excludes(slip);
   for (auto* straight : {inflation, hard}) straight->excludes(angle);
   hard->excludes(soil);
   groupOptions(command, "Tyres and hard ground (thesis C.2)");
-  auto* cases =
-      command.add_option("--cases", options.cases, "solve each row of a CSV file")->type_name("IN.csv");
-  addOutput(command, "-o,--output", options.output, "results of --cases to write")
-      ->type_name("OUT.csv")
-      ->needs(cases);
+  auto* cases = addOption(command, "--cases IN.csv", options.cases, "solve each row of a CSV file");
+  addOutput(command, "-o,--output OUT.csv", options.output, "results of --cases to write")->needs(cases);
   for (auto* single : {soil, rover, load, slip, angle, inflation, carcass, hard, torque})
     cases->excludes(single);
   groupOptions(command, "A table of wheels");

@@ -101,52 +101,39 @@ void addMapOptions(CLI::App& command, ElevationFile& file, const std::string& na
 
 void addReadOptions(CLI::App& command, ElevationFile& file) {
   maps::ReadOptions& read = file.read;
-  command.add_option("--band", read.band, "band of elevations, counted from 1")->type_name("N");
-  command
-      .add_option("--resolution", read.resolution_m,
-                  "cell size; required without a CRS; resamples with a CRS")
-      ->type_name("METRES");
-  command
-      .add_option("--window", file.window,
-                  "read only this window: x0,y0,x1,y1, or lat,lon,lat,lon with the suffix d on each")
-      ->type_name("BOX");
-  command.add_option("--nodata", read.nodata, "value of cells without data")->type_name("VALUE");
+  addOption(command, "--band N", read.band, "band of elevations, counted from 1");
+  addOption(command, "--resolution METRES", read.resolution_m,
+            "cell size; required without a CRS; resamples with a CRS");
+  addOption(command, "--window BOX", file.window,
+            "read only this window: x0,y0,x1,y1, or lat,lon,lat,lon with the suffix d on each");
+  addOption(command, "--nodata VALUE", read.nodata, "value of cells without data");
   command.add_flag("--keep-holes", read.keep_holes,
                    "leave single cells without data unknown instead of interpolating them");
-  command
-      .add_option("--vertical-scale", read.vertical_scale,
-                  "factor on the heights; metres per unit where the file states an unknown one")
-      ->type_name("FACTOR");
+  addOption(command, "--vertical-scale FACTOR", read.vertical_scale,
+            "factor on the heights; metres per unit where the file states an unknown one");
   command.add_flag("--ignore-crs", read.ignore_crs,
                    "ignore a wrong CRS and read as local metres (with --resolution)");
   command.add_flag("--allow-vrt", read.allow_vrt,
                    "read a virtual raster (VRT) whose files lie in its own folder");
-  command
-      .add_option("--below", file.below_m,
-                  "of an OctoMap: use the ground at or below this elevation, as under a bridge")
-      ->type_name("METRES");
-  command.add_option("--max-cells", read.max_cells, "largest accepted map, in cells")
-      ->type_name("N")
+  addOption(command, "--below METRES", file.below_m,
+            "of an OctoMap: use the ground at or below this elevation, as under a bridge");
+  addOption(command, "--max-cells N", read.max_cells, "largest accepted map, in cells")
       ->check(within(1.0, 1e15))
       ->capture_default_str();
   groupOptions(command, "Elevation map");
 }
 
 void addLayerOptions(CLI::App& command, SiteFiles& files) {
-  command.add_option("--terrain", files.classes, "raster of terrain classes")->type_name("FILE");
-  command.add_option("--terrain-band", files.classes_band, "band of the raster, counted from 1")
-      ->type_name("N");
-  command.add_option("--rocks", files.rocks, "raster of rock abundance, 0 to 1")->type_name("FILE");
-  command.add_option("--rocks-band", files.rocks_band, "band of the raster, counted from 1")->type_name("N");
-  command
-      .add_option("--keep-out", files.keep_out, "polygons of a vector file to keep out of; may be repeated")
-      ->type_name("FILE");
-  command
-      .add_option(
-          "--layer", files.costs,
-          "joules a metre to add, as NAME=FILE of a raster or a layer plugin (.so): inf is refused, no data "
-          "counts as unknown; may be repeated")
-      ->type_name("NAME=FILE");
+  addOption(command, "--terrain FILE", files.classes, "raster of terrain classes");
+  addOption(command, "--terrain-band N", files.classes_band, "band of the raster, counted from 1");
+  addOption(command, "--rocks FILE", files.rocks, "raster of rock abundance, 0 to 1");
+  addOption(command, "--rocks-band N", files.rocks_band, "band of the raster, counted from 1");
+  addOption(command, "--keep-out FILE", files.keep_out,
+            "polygons of a vector file to keep out of; may be repeated");
+  addOption(
+      command, "--layer NAME=FILE", files.costs,
+      "joules a metre to add, as NAME=FILE of a raster or a layer plugin (.so): inf is refused, no data "
+      "counts as unknown; may be repeated");
   groupOptions(command, "Layers");
 }
 
@@ -181,25 +168,19 @@ void addPolicy(CLI::App& command, costmap::TravelPolicy& policy) {
           "--slope-uncertainty-deg", [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; },
           "slope uncertainty on either side of a category threshold (default: 5)")
       ->type_name("DEG");
-  command.add_option("--time-weight", policy.time_weight_W, "cost of time, joules per second")
-      ->type_name("W")
+  addOption(command, "--time-weight W", policy.time_weight_W, "cost of time, joules per second")
       ->capture_default_str();
-  command
-      .add_option("--entrapment", policy.entrapment,
-                  "fraction of the places with too weak soil that immobilise a rover that monitors its slip")
-      ->type_name("FRACTION")
+  addOption(command, "--entrapment FRACTION", policy.entrapment,
+            "fraction of the places with too weak soil that immobilise a rover that monitors its slip")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command.add_flag("--unmonitored", policy.unmonitored,
                    "slip is not monitored: every place with too weak soil immobilises the rover");
-  command
-      .add_option("--pose-error", policy.pose_error_m,
-                  "position error of the rover: soil is evaluated that far beyond the wheels")
-      ->type_name("METRES")
+  addOption(command, "--pose-error METRES", policy.pose_error_m,
+            "position error of the rover: soil is evaluated that far beyond the wheels")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
-  command.add_option("--risk-weight", policy.risk_weight_J, "cost of losing the rover, joules")
-      ->type_name("J")
+  addOption(command, "--risk-weight J", policy.risk_weight_J, "cost of losing the rover, joules")
       ->capture_default_str();
   groupOptions(command, "Cost and thresholds");
 }
@@ -305,38 +286,31 @@ void addGroundOptions(CLI::App& command, GroundOptions& options) {
   addMapOptions(command, options.elevation);
   command.get_option("DEM")->description(
       "elevation map: any GDAL raster, or an OctoMap; or the mission that describes the site");
-  command.add_option("--map", options.map_file, "traversability map from `talus costmap` or `talus update`")
-      ->type_name("MAP.ot");
+  addOption(command, "--map MAP.ot", options.map_file,
+            "traversability map from `talus costmap` or `talus update`");
   groupOptions(command, "Elevation map");
   addGroundChoices(command, options);
 }
 
 void addGroundChoices(CLI::App& command, GroundOptions& options) {
   addLayerOptions(command, options);
-  command.add_option("--soils", options.soils, "soil of each terrain class")->type_name("FILE");
-  auto* soil =
-      command.add_option("--soil", options.soil, "soil of cells without a class: a library name or a file")
-          ->type_name("SOIL");
-  command
-      .add_option("--model", options.model,
-                  "refined model of cells without a class, from `talus trace`, instead of --soil")
-      ->type_name("M.yaml")
+  addOption(command, "--soils FILE", options.soils, "soil of each terrain class");
+  auto* soil = addOption(command, "--soil SOIL", options.soil,
+                         "soil of cells without a class: a library name or a file");
+  addOption(command, "--model M.yaml", options.model,
+            "refined model of cells without a class, from `talus trace`, instead of --soil")
       ->excludes(soil);
-  command.add_option("--rover", options.rover, "rover: a library name or a file")->type_name("ROVER");
-  command
-      .add_option("--footprint", options.footprint_m,
-                  "radius over which slopes are computed (default: the rover's)")
-      ->type_name("METRES")
+  addOption(command, "--rover ROVER", options.rover, "rover: a library name or a file");
+  addOption(command, "--footprint METRES", options.footprint_m,
+            "radius over which slopes are computed (default: the rover's)")
       ->check(notNegative());
   groupOptions(command, "Soil and rover");
   addPolicy(command, options.policy);
 }
 
 void addCostCurve(CLI::App& command, GroundOptions& options) {
-  command
-      .add_option("--cost-curve", options.cost_curve,
-                  "cost a metre over gradient_along and gradient_across, in place of rover and soil")
-      ->type_name("FILE.csv");
+  addOption(command, "--cost-curve FILE.csv", options.cost_curve,
+            "cost a metre over gradient_along and gradient_across, in place of rover and soil");
   command
       .add_flag("--cost", options.is_cost,
                 "the map is a raster of costs a metre, or the YAML file of a Nav2 map, in place of heights, "

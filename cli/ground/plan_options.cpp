@@ -50,10 +50,8 @@ CLI::Validator turningRadius() {
 }
 
 void addChassisOption(CLI::App& command, std::string& chassis) {
-  command
-      .add_option("--chassis", chassis,
-                  "check clearance, pitch and roll of this chassis along the whole motion (any planner)")
-      ->type_name("KIND")
+  addOption(command, "--chassis KIND", chassis,
+            "check clearance, pitch and roll of this chassis along the whole motion (any planner)")
       ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
 }
 
@@ -73,49 +71,38 @@ std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap
 namespace {
 
 void addOutputs(CLI::App& command, PlanOptions& options) {
-  addOutput(command, "-o,--output", options.output,
-            "route to write; GPX and KML of Earth alone; CSV with --pairs")
-      ->type_name("ROUTE.geojson|ROUTE.gpkg|ROUTE.gpx|ROUTE.kml|FILE.csv");
-  addOutput(command, "--html", options.html, "page to write: map, route and profiles")
-      ->type_name("PAGE.html");
-  addOutput(command, "--png", options.png, "picture to write")->type_name("FILE.png");
+  addOutput(command, "-o,--output ROUTE.geojson|ROUTE.gpkg|ROUTE.gpx|ROUTE.kml|FILE.csv", options.output,
+            "route to write; GPX and KML of Earth alone; CSV with --pairs");
+  addOutput(command, "--html PAGE.html", options.html, "page to write: map, route and profiles");
+  addOutput(command, "--png FILE.png", options.png, "picture to write");
   addImageOption(command, options.image);
   groupOptions(command, "Output");
 }
 
 void addPairs(CLI::App& command, PlanOptions& options) {
-  command
-      .add_option("--pairs", options.pairs,
-                  "plan many routes over one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; one row "
-                  "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun")
-      ->type_name("FILE.csv");
-  command
-      .add_option("--part", options.part,
-                  "plan part K of N of the pairs alone; the rows of the parts make the table")
-      ->type_name("K/N")
+  addOption(command, "--pairs FILE.csv", options.pairs,
+            "plan many routes over one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; one row "
+            "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun");
+  addOption(command, "--part K/N", options.part,
+            "plan part K of N of the pairs alone; the rows of the parts make the table")
       ->needs("--pairs");
 }
 
 }  // namespace
 
 void addPluginOption(CLI::App& command, std::string& plugin) {
-  command
-      .add_option("--plugin", plugin,
-                  "plan by a planner plugin instead; its route is checked, and the cost is the program's own")
-      ->type_name("FILE.so");
+  addOption(command, "--plugin FILE.so", plugin,
+            "plan by a planner plugin instead; its route is checked, and the cost is the program's own");
 }
 
 void addImageOption(CLI::App& command, std::string& image) {
-  command
-      .add_option("--image", image, "picture of the ground, such as an orthophoto, to show under the route")
-      ->type_name("ORTHO.tif");
+  addOption(command, "--image ORTHO.tif", image,
+            "picture of the ground, such as an orthophoto, to show under the route");
 }
 
 void addPluginTime(CLI::App& command, double& time_limit_s) {
-  command
-      .add_option("--time", time_limit_s,
-                  "time limit of the plugin for each plan, which it is ended a second after (default: none)")
-      ->type_name("S")
+  addOption(command, "--time S", time_limit_s,
+            "time limit of the plugin for each plan, which it is ended a second after (default: none)")
       ->check(positive())
       ->needs(command.get_option("--plugin"));
 }
@@ -123,50 +110,35 @@ void addPluginTime(CLI::App& command, double& time_limit_s) {
 void bindPlan(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
   addCostCurve(command, options.ground);
-  command
-      .add_option("--start", options.start,
-                  "start: x,y in map metres; lat,lon with the suffix d on each; or a vector file")
-      ->type_name("PLACE");
-  command
-      .add_option("--goal", options.goals,
-                  "goal, in the same formats; may be repeated: the goal of least cost is chosen")
-      ->type_name("PLACE");
-  command.add_option("--via", options.via, "via point; may be repeated")->type_name("PLACE");
+  addOption(command, "--start PLACE", options.start,
+            "start: x,y in map metres; lat,lon with the suffix d on each; or a vector file");
+  addOption(command, "--goal PLACE", options.goals,
+            "goal, in the same formats; may be repeated: the goal of least cost is chosen");
+  addOption(command, "--via PLACE", options.via, "via point; may be repeated");
   addPairs(command, options);
-  command
-      .add_option("--tolerance", options.tolerance_m,
-                  "goal tolerance: largest distance between the end of the route and the goal")
-      ->type_name("METRES")
+  addOption(command, "--tolerance METRES", options.tolerance_m,
+            "goal tolerance: largest distance between the end of the route and the goal")
       ->check(notNegative());
   groupOptions(command, "Places");
-  command.add_option("--planner", options.planner, "planner; `talus plugins` lists them")
-      ->type_name("NAME")
+  addOption(command, "--planner NAME", options.planner, "planner; `talus plugins` lists them")
       ->capture_default_str();
   addPluginOption(command, options.plugin);
-  command.add_option("--time", options.time_limit_s, "time limit of planning")
-      ->type_name("S")
-      ->check(positive());
-  command
-      .add_option(
-          "--in-memory", options.in_memory,
-          "largest DEM that is read whole; a larger one is read in windows along a route over its overview")
-      ->type_name("CELLS")
+  addOption(command, "--time S", options.time_limit_s, "time limit of planning")->check(positive());
+  addOption(command, "--in-memory CELLS", options.in_memory,
+            "largest DEM that is read whole; a larger one is read in windows along a route over its overview")
       ->check(notNegative())
       ->capture_default_str();
   command.add_flag("--no-proof", options.no_proof,
                    "do not search a lower bound, nor its region for a cheaper route: quicker, for loops");
-  command.add_option("--gap", options.gap, "end at this proven gap: share of the cost above its lower bound")
-      ->type_name("SHARE")
+  addOption(command, "--gap SHARE", options.gap,
+            "end at this proven gap: share of the cost above its lower bound")
       ->check(within(1e-4, 0.99))
       ->excludes("--no-proof");
-  command
-      .add_option("--corridor", options.corridor_percent,
-                  "write to -o AREA.gpkg the area that every route within this excess over the cost stays in")
-      ->type_name("PERCENT")
+  addOption(command, "--corridor PERCENT", options.corridor_percent,
+            "write to -o AREA.gpkg the area that every route within this excess over the cost stays in")
       ->check(within(0.01, 1000.0));
-  command
-      .add_option("--risk", options.max_risk, "upper limit of the immobilisation probability of the route")
-      ->type_name("ALPHA")
+  addOption(command, "--risk ALPHA", options.max_risk,
+            "upper limit of the immobilisation probability of the route")
       ->check(within(1e-12, 1.0 - 1e-12));
   groupOptions(command, "Planner");
   addMotionOptions(command, options.drive);

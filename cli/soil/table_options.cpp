@@ -61,21 +61,15 @@ void requireOnce(const std::vector<MappedColumn>& columns, const std::string& wh
 }  // namespace
 
 void addTableOptions(CLI::App& command, TableOptions& options) {
-  command
-      .add_option("--column", options.columns,
-                  "read a column of the file under another name, in another unit (load_N=Fz, "
-                  "slip=slip_pct:percent); may be repeated")
-      ->type_name("KNOWN=NAME[:UNIT]");
-  command
-      .add_option("--columns", options.columns_file,
-                  "file with a line each as --column takes it, # for remarks")
-      ->type_name("FILE");
-  command.add_option("--radius", options.radius_m, "wheel radius of every row, in metres")
-      ->check(within(1e-3, 10.0))
-      ->type_name("M");
-  command.add_option("--width", options.width_m, "wheel width of every row, in metres")
-      ->check(within(1e-3, 10.0))
-      ->type_name("M");
+  addOption(command, "--column KNOWN=NAME[:UNIT]", options.columns,
+            "read a column of the file under another name, in another unit (load_N=Fz, "
+            "slip=slip_pct:percent); may be repeated");
+  addOption(command, "--columns FILE", options.columns_file,
+            "file with a line each as --column takes it, # for remarks");
+  addOption(command, "--radius M", options.radius_m, "wheel radius of every row, in metres")
+      ->check(within(1e-3, 10.0));
+  addOption(command, "--width M", options.width_m, "wheel width of every row, in metres")
+      ->check(within(1e-3, 10.0));
   groupOptions(command, "Columns of the table");
 }
 
