@@ -51,13 +51,9 @@ std::vector<Column> usedOf(const std::vector<terramech::Telemetry::Numbers>& col
   return used;
 }
 
-// Adds the values of a row. A missing column counts as a column of NaN, except columns that files of older
-// maps could not have, so that their identifiers stay.
+// Adds the values of a row. A missing column counts as a column of NaN.
 void addNumbers(Checksum& sum, const std::vector<Column>& columns, std::size_t row) {
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    const Column column = columns[c];
-    const std::string_view name = usedNumberColumns()[c];
-    if (!column && (name.starts_with("odometry") || name == "wheel_rate_rad_s")) continue;
+  for (const Column column : columns) {
     double value = column ? (*column)[row] : std::numeric_limits<double>::quiet_NaN();
     if (std::isnan(value)) value = std::numeric_limits<double>::quiet_NaN();
     sum.add(&value, sizeof value);

@@ -33,29 +33,15 @@ struct Row {
 };
 
 terramech::Telemetry tableOf(const std::vector<Row>& rows, const terramech::Rover& rover = testRover()) {
-  terramech::Telemetry out;
-  out.source = "drive.csv";
-  const std::vector<std::pair<const char*, double Row::*>> columns{{"time_s", &Row::time_s},
-                                                                   {"x_m", &Row::x_m},
-                                                                   {"y_m", &Row::y_m},
-                                                                   {"slip", &Row::slip},
-                                                                   {"torque_Nm", &Row::torque_Nm},
-                                                                   {"sinkage_m", &Row::sinkage_m},
-                                                                   {"slope_rad", &Row::slope_rad},
-                                                                   {"heading_rad", &Row::heading_rad}};
-  for (const auto& [name, field] : columns) {
-    std::vector<double> values;
-    for (const Row& row : rows) values.push_back(row.*field);
-    if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); }))
-      out.numbers.push_back({name, values});
+  const double load_N = terramech::wheelLoad_N(rover);
+  Drive drive;
+  for (const Row& r : rows) {
+    drive.rows.push_back(
+        {r.time_s, r.x_m, r.y_m, r.heading_rad, r.slope_rad, r.slip, load_N, r.torque_Nm, r.sinkage_m, 1.0});
+    drive.wheel.push_back(r.wheel);
   }
-  out.numbers.push_back({"load_N", std::vector<double>(rows.size(), terramech::wheelLoad_N(rover))});
-  out.words = {{"wheel", {}}};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    out.lines.push_back(i + 2);
-    out.words[0].values.push_back(rows[i].wheel);
-  }
-  return out;
+  drive.run.resize(rows.size());
+  return tableOf(drive);
 }
 
 constexpr int kSide = 40;
@@ -354,7 +340,7 @@ TEST(Danger, DangerousChannelRefusesThePlaceForAnyOtherValues) {
       telemetry.rejected_numbers = row;
     } else {
       telemetry.lines.push_back(99);
-      telemetry.words[0].values.push_back("w0");
+      for (auto& column : telemetry.words) column.values.push_back(column.values.back());
       for (const auto& column : row) {
         auto known = std::find_if(telemetry.numbers.begin(), telemetry.numbers.end(),
                                   [&](const auto& c) { return c.name == column.name; });

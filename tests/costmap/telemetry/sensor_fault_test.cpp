@@ -314,28 +314,15 @@ std::vector<Row> soundDrive(const TraversabilityMap& map) {
 }
 
 terramech::Telemetry tableOf(const std::vector<Row>& rows) {
-  terramech::Telemetry out;
-  out.source = "drive.csv";
-  const std::vector<std::pair<const char*, double Row::*>> columns{{"time_s", &Row::time_s},
-                                                                   {"x_m", &Row::x_m},
-                                                                   {"y_m", &Row::y_m},
-                                                                   {"heading_rad", &Row::heading_rad},
-                                                                   {"slope_rad", &Row::slope_rad},
-                                                                   {"slip", &Row::slip},
-                                                                   {"torque_Nm", &Row::torque_Nm},
-                                                                   {"sinkage_m", &Row::sinkage_m}};
-  for (const auto& [name, field] : columns) {
-    std::vector<double> values;
-    for (const Row& row : rows) values.push_back(row.*field);
-    out.numbers.push_back({name, values});
+  const double load_N = terramech::wheelLoad_N(testRover());
+  Drive drive;
+  for (const Row& r : rows) {
+    drive.rows.push_back(
+        {r.time_s, r.x_m, r.y_m, r.heading_rad, r.slope_rad, r.slip, load_N, r.torque_Nm, r.sinkage_m, 1.0});
+    drive.run.push_back(r.run);
   }
-  out.numbers.push_back({"load_N", std::vector<double>(rows.size(), terramech::wheelLoad_N(testRover()))});
-  out.words = {{"run", {}}};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    out.lines.push_back(i + 2);
-    out.words[0].values.push_back(rows[i].run);
-  }
-  return out;
+  drive.wheel.assign(rows.size(), "w0");
+  return tableOf(drive);
 }
 
 // Number of cells whose estimate rose by more than rounding, in mean or tail.
