@@ -98,18 +98,18 @@ std::vector<Effect> readEffects(const YamlFields& root);
 ModelFile unknownSoil();
 
 /// Returns the text of a model file. loadModel() restores bit-identical numbers, except that numbers too
-/// small for a file become 0. Priors of the soil, RefinedModel::stated and Soil::test_gravity_m_s2 are not
-/// written.
+/// small for a file become 0. Priors of the soil, RefinedModel::stated, Soil::test_gravity_m_s2 and
+/// Soil::correlation_time_s are not written.
 std::string modelText(const RefinedModel& model, const ModelScope& scope = {});
 
 /// Reads soils and rovers by name from the built-in library, or from YAML files.
 ///
 /// A soil file is a mapping of the fields of Soil (name, cohesion_Pa, friction_angle_rad, sinkage_exponent,
 /// cohesive_modulus, frictional_modulus, shear_modulus_m, c1, c2, density_kg_m3, slip_sinkage_exponent,
-/// test_gravity_m_s2, digging_exponent, side_bulldozing, rut_stiffness), at the root of the file or under `soil:`. Every
-/// field except name is a number; all numbers except test_gravity_m_s2 may be {mean: M, std: S}. A list under
-/// `soils:` contains several soils, of which PATH#NAME selects one. A rover file is a mapping of the fields
-/// of Rover, at the root of the file or under `rover:`. Units and checks are described in yaml_fields.hpp.
+/// test_gravity_m_s2, correlation_time_s, digging_exponent, side_bulldozing, rut_stiffness), at the root of the file or
+/// under `soil:`. Every field except name is a number; all numbers except the gravity and the time may be {mean: M,
+/// std: S}. A list under `soils:` contains several soils, of which PATH#NAME selects one. A rover file is a mapping of
+/// the fields of Rover, at the root of the file or under `rover:`. Units and checks are described in yaml_fields.hpp.
 
 class YamlFields;
 

@@ -229,6 +229,14 @@ const BlockEvidence* EvidenceField::evidence(maps::Cell cell) const noexcept {
   return found == store_->evidence.end() ? nullptr : &found->second;
 }
 
+double EvidenceField::newest_s() const noexcept {
+  std::uint32_t newest = 0;
+  for (const auto& [block, of] : store_->evidence)
+    if (store_->groundClass(site_->model->classIndex(block.terrain_class)).soil.correlation_time_s > 0.0)
+      newest = std::max(newest, of.updated_s());
+  return newest;
+}
+
 std::vector<ClassState> EvidenceField::states() const {
   std::vector<ClassState> all;
   for (int i = 0; i < static_cast<int>(store_->classes.size()); ++i) all.push_back(stateOf(i));

@@ -308,6 +308,8 @@ class EvidenceField {
   /// Returns the evidence of the block that contains a cell, for the cell's class; null without evidence.
   const BlockEvidence* evidence(maps::Cell cell) const noexcept;
 
+  /// Returns the telemetry time of the newest reading of the classes whose soil changes with time; 0 without one [s].
+  double newest_s() const noexcept;
   /// Returns the estimate for ground of a class without nearby evidence.
   GroundBelief classBelief(int class_index) const;
   /// Returns the states of all classes, in the order of GroundModel::Parts::classes.

@@ -90,6 +90,14 @@ void reportDrive(const DriveEstimate& drive, const TraversabilityMap& map, Drive
   }
 }
 
+// Latest time of a drive [s]; infinite without times.
+double lastTime_s(const terramech::Telemetry& telemetry) {
+  const std::vector<double>* times = telemetry.find("time_s");
+  double last = times ? 0.0 : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; times && i < times->size(); ++i) last = std::fmax(last, (*times)[i]);
+  return last;
+}
+
 std::string othersFinding(std::size_t rows) {
   return std::to_string(rows) +
          " rows: of another wheel or load than the map's rover has; they count as unverified";
@@ -287,9 +295,14 @@ DriveReport addDrive(TraversabilityMap& map, const terramech::Telemetry& telemet
               [](std::size_t, TelemetryProcessor::Result&&) {});
   DriveIntake intake(map, journal, options);
   const DriveVerdict verdict = first_pass.verdict();
+  const double newest_s = map.evidence().newest_s();
   intake.state_->put(telemetry, verdict, known);
   map.publishAll();
   DriveReport report = intake.report();
+  if (const double days = (newest_s - lastTime_s(telemetry)) / 86400.0; days > 1.0)
+    report.findings.push_back(
+        "time_s ends " + std::to_string(std::lround(days)) +
+        " days before the newest drive of the map: it counts as older; check the clocks");
   if (verdict.drive && report.raising > 0) reportDrive(*verdict.drive, map, report);
   return report;
 }

@@ -17,7 +17,7 @@ struct SoilField {
   bool required = false;  ///< false: the default is that of Soil
 };
 
-/// Returns all numbers of a soil except test_gravity_m_s2.
+/// Returns all numbers of a soil except test_gravity_m_s2 and correlation_time_s.
 std::span<const SoilField> soilFields();
 
 /// Converts the option --prior of the program to the priors of each estimation method.

@@ -619,15 +619,9 @@ TEST(Rut, SecondPassSinksLessAndPullsMore) {
 }
 
 Rover deepRover() {
-  return {.name = "box",
-          .mass_kg = 40.0,
-          .gravity_m_s2 = 3.71,
-          .wheel_count = 4,
-          .wheel = {.radius_m = 0.12, .width_m = 0.1},
-          .wheelbase_m = 0.8,
-          .track_m = 0.7,
-          .clearance_m = 0.2,
-          .max_torque_Nm = 40.0};
+  Rover rover = boxRover();
+  rover.gravity_m_s2 = 3.71;
+  return rover;
 }
 
 Soil soil(int kind) {
