@@ -240,6 +240,16 @@ TEST(ClassEvidence, ContradictingDrivesLeaveTheWeakerOneProbable) {
   EXPECT_LT(with(Trust::Twice), 0.25);
 }
 
+// Property: what an old drive over few places read below the present ground is common to its places.
+TEST(ClassEvidence, ChangeOfTheSoilIsCommonToAnOldDrive) {
+  ClassEvidence evidence(sand(kDay_s));
+  const auto old = pullOf(1, Trust::Twice, -0.05, 0.02, kDay_s);
+  for (int b = 0; b < 2; ++b) evidence.count(std::vector{old}, kPrior, 1.0, 1);
+  for (int b = 0; b < 20; ++b)
+    evidence.count(std::vector{pullOf(2, Trust::Twice, 0.05, 0.02, 200.0 * kDay_s)}, kPrior, 1.0, 1);
+  EXPECT_NEAR(evidence.state().hypotheses[0].sound[0].second, -0.1, 0.015);
+}
+
 // Property: the order of blocks has no effect, and a block that is removed leaves nothing behind.
 TEST(ClassEvidence, SumsAreExact) {
   std::mt19937_64 random(5);

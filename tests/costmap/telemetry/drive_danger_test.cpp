@@ -489,26 +489,25 @@ INSTANTIATE_TEST_SUITE_P(Each, FalseSecondSlip,
 // drive that is older than the map's evidence is named; on one that does not change, on both drives.
 TEST(ChangingSoil, NewestDriveCountsInEitherOrder) {
   GroundClass ground = groundClass(1, sandPrior(), testRover());
+  const TraversabilityMap site(hills(), groundOf(ground), {});
   terramech::Soil wet = testSand();
   wet.friction_angle_rad -= 0.1;
-  const auto counted = [&](double correlation_time_s, bool wet_first, bool both, std::string* finding) {
+  Drive late = driveOver(site, testSand(), 2);
+  for (auto& row : late.rows) row[kTime] += 60.0 * 86400.0;
+  const auto first = measuredTwice(tableOf(driveOver(site, wet, 1), false)),
+             second = measuredTwice(tableOf(late, false));
+  std::vector<std::string> findings;
+  const auto counted = [&](double correlation_time_s, const std::vector<terramech::Telemetry>& drives) {
     ground.soil.correlation_time_s = correlation_time_s;
     TraversabilityMap map(hills(), groundOf(ground), {});
-    Drive late = driveOver(map, testSand(), 2);
-    for (auto& row : late.rows) row[kTime] += 60.0 * 86400.0;
-    const auto first = measuredTwice(tableOf(driveOver(map, wet, 1), false)),
-               second = measuredTwice(tableOf(late, false));
-    if (both && wet_first) addDrive(map, first);
-    addDrive(map, second);
-    if (both && !wet_first) *finding = addDrive(map, first).findings.back();
+    for (const auto& drive : drives) findings = addDrive(map, drive).findings;
     return map.evidence().classBelief(0).pull.value;
   };
-  std::string finding;
-  const double alone = counted(86400.0, true, false, nullptr);
-  EXPECT_NEAR(counted(86400.0, true, true, nullptr), alone, 0.01);
-  EXPECT_NEAR(counted(86400.0, false, true, &finding), alone, 0.01);
-  EXPECT_EQ(finding.find("time_s ends 60 days before the newest drive"), 0U) << finding;
-  EXPECT_LT(counted(0.0, true, true, nullptr), alone - 0.02);
+  const double alone = counted(86400.0, {second});
+  EXPECT_NEAR(counted(86400.0, {first, second}), alone, 0.01);
+  EXPECT_NEAR(counted(86400.0, {second, first}), alone, 0.01);
+  EXPECT_EQ(findings.back().find("time_s ends 60 days before the newest drive"), 0U) << findings.back();
+  EXPECT_LT(counted(0.0, {first, second}), alone - 0.02);
 }
 
 std::string bytesOf(const TraversabilityMap& map) {

@@ -325,12 +325,10 @@ TEST(SideSlip, SlipAnglesBeyondNinetyDegreesAreRejected) {
 }
 
 Soil firmLoam() {
-  return {.name = "loam",
-          .cohesion_Pa = 3000.0,
-          .friction_angle_rad = 0.5,
-          .sinkage_exponent = 0.8,
-          .frictional_modulus = 2e6,
-          .shear_modulus_m = 0.02};
+  Soil soil = loam();
+  soil.friction_angle_rad = 0.5;
+  soil.frictional_modulus = 2e6;
+  return soil;
 }
 
 Tyre tyre(double inflation_Pa) {

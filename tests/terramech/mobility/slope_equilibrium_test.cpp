@@ -20,19 +20,17 @@ namespace talus::terramech {
 namespace slope_equilibrium_test {
 
 Rover fourWheels(Steering steering) {
-  Rover rover{.name = "cart",
-              .mass_kg = 100.0,
-              .gravity_m_s2 = 2.0,
-              .wheel_count = 4,
-              .wheelbase_m = 1.2,
-              .track_m = 0.9,
-              .clearance_m = 0.2,
-              .max_torque_Nm = 10.0,
-              .max_speed_mps = 0.5,
-              .steering = steering};
-  rover.wheel.radius_m = 0.1;
-  rover.wheel.width_m = 0.1;
-  return rover;
+  return {.name = "cart",
+          .mass_kg = 100.0,
+          .gravity_m_s2 = 2.0,
+          .wheel_count = 4,
+          .wheel = {.radius_m = 0.1, .width_m = 0.1},
+          .wheelbase_m = 1.2,
+          .track_m = 0.9,
+          .clearance_m = 0.2,
+          .max_torque_Nm = 10.0,
+          .max_speed_mps = 0.5,
+          .steering = steering};
 }
 
 TEST(Turning, SkidSteeringEnergyIsLateralFrictionWork) {
@@ -256,17 +254,13 @@ Soil coarseSand() {
 }
 
 Rover boxRover(Steering steering = Steering::AllWheel) {
-  return {.name = "box",
-          .mass_kg = 40.0,
-          .wheel_count = 4,
-          .wheel = {.radius_m = 0.12, .width_m = 0.1},
-          .wheelbase_m = 0.8,
-          .track_m = 0.7,
-          .clearance_m = 0.2,
-          .centre_of_mass_height_m = 0.3,
-          .max_torque_Nm = 40.0,
-          .hotel_power_W = 10.0,
-          .steering = steering};
+  Rover box = rover();
+  box.wheel = {.radius_m = 0.12, .width_m = 0.1};
+  box.track_m = 0.7;
+  box.max_torque_Nm = 40.0;
+  box.hotel_power_W = 10.0;
+  box.steering = steering;
+  return box;
 }
 
 constexpr Steering kSteerings[] = {Steering::Skid, Steering::Ackermann, Steering::AllWheel};
