@@ -10,47 +10,13 @@
 #include <ctime>
 #include <string>
 
-#include <talus/terramech/calibration/trace/residual_trace.hpp>
-
-#include "blind_worlds.hpp"
+#include "calibration/traced_world.hpp"
 #include "plain_scan.hpp"
 
 using namespace talus;
 using namespace talus::terramech;
 
 namespace {
-
-Telemetry telemetryOf(const blind::World& world, const std::vector<std::vector<double>>& rows) {
-  Telemetry t;
-  t.source = "world";
-  for (std::size_t k = 0; k < world.columns.size(); ++k) {
-    t.numbers.push_back({world.columns[k], {}});
-    for (const auto& row : rows) t.numbers.back().values.push_back(row[k]);
-  }
-  if (world.run.size() == rows.size()) {
-    t.words.push_back({"run", {}});
-    for (int run : world.run) t.words.back().values.push_back("run" + std::to_string(run));
-  }
-  if (world.site.size() == rows.size() && !rows.empty()) t.words.push_back({"site", world.site});
-  for (std::size_t row = 0; row < rows.size(); ++row) t.lines.push_back(row + 2);
-  return t;
-}
-
-RefinedModel baseOf(const blind::World& w) {
-  RefinedModel m;
-  const auto& g = w.ground;
-  m.soil = {.name = "hidden",
-            .cohesion_Pa = g.cohesion,
-            .friction_angle_rad = g.phi,
-            .sinkage_exponent = g.n,
-            .cohesive_modulus = 0.0,
-            .frictional_modulus = g.k,
-            .shear_modulus_m = g.shear_k,
-            .c1 = g.c1,
-            .c2 = g.c2,
-            .density_kg_m3 = g.density};
-  return m;
-}
 
 double rms(const std::vector<double>& v) {
   double s = 0.0;
@@ -83,7 +49,7 @@ std::string answerWith(blind::World world, const std::vector<std::string>& names
   for (std::string& column : world.columns)
     for (std::size_t k = 0; k < own.size(); ++k)
       if (column == own[k]) column = names[k];
-  const RefinedModel base = baseOf(world);
+  const RefinedModel base = baseOf(world.ground);
   std::string answer;
   for (const TracedEffect& e :
        traceResiduals(base, makeTrial(telemetryOf(world, world.rows), base)).effects) {
@@ -120,7 +86,7 @@ int main(int argc, char** argv) {
     plan.campaign = argc > 4 && std::string(argv[4]) == "campaign";
     const blind::World world = blind::makeWorld(plan);
     const double start = cpu();
-    const RefinedModel base = baseOf(world);
+    const RefinedModel base = baseOf(world.ground);
     if (argc > 5 && std::string(argv[5]) == "renamed") {
       const std::string a = answerWith(world, {"temperature_C", "dust_index", "battery_V"}),
                         b = answerWith(world, {"operator_id", "hours_since_rain", "moisture_pct"});

@@ -130,10 +130,8 @@ class FitPoint {
   }
 
   Eigen::MatrixXd jacobianHere() {
-    Eigen::MatrixXd j = plan_.derivative
-                            ? *plan_.derivative
-                            : jacobian(model_, trial_, plan_.free, solved_,
-                                       [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); });
+    Eigen::MatrixXd j = jacobian(model_, trial_, plan_.free, solved_,
+                                 [&](const Eigen::MatrixXd& m) { return whitening_.apply(m); });
     for (Eigen::Index k = 0; k < j.cols(); ++k) j.col(k) *= scale(k);
     return j;
   }
@@ -316,7 +314,7 @@ Eigen::MatrixXd parameterCovariance(const RefinedModel& fitted, const Trial& tri
   normal.diagonal().array() += 1e-9;
   const Eigen::VectorXd s = search.scales();
   // (T24)
-  return s.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * s.asDiagonal();
+  return plan.misfit * s.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n)) * s.asDiagonal();
 }
 
 namespace {

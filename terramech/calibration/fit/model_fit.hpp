@@ -30,8 +30,6 @@ struct FitPlan {
   /// weight of the rows relative to the priors is divided by this value.
   double misfit = 1.0;
   int iterations = 12;  ///< greatest number of iterations
-  /// Derivative of the whitened predictions, used in all iterations; null: recomputed in each iteration.
-  const Eigen::MatrixXd* derivative = nullptr;
 };
 
 /// Fitted model with its sums of squares.

@@ -48,10 +48,9 @@ std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, c
                    given ? kStatedSpread : 1.0});
     all.push_back({&noise.relative[k], given ? 0.01 : 0.03, 1.0});
   }
-  if (stated.slip)
-    all.push_back({&noise.slip_absolute, std::max(*stated.slip, 1e-5), kStatedSpread});
-  else
-    all.push_back({&noise.slip_relative, 0.02, 0.7});
+  all.push_back(
+      {&noise.slip_absolute, std::max(stated.slip.value_or(0.005), 1e-5), stated.slip ? kStatedSpread : 1.0});
+  if (!stated.slip) all.push_back({&noise.slip_relative, 0.02, 0.7});
   const double load = medianOf(trial.load_N);
   all.push_back({&noise.load_relative, stated.load_N ? std::max(*stated.load_N / load, 1e-5) : 0.02,
                  stated.load_N ? kStatedSpread : 0.7});

@@ -158,23 +158,28 @@ RefinedModel TrialFit::fitted(const RefinedModel& model, int iterations) const {
   return fit(model, iterations, solved).model;
 }
 
-void TrialFit::refit(int iterations) {
-  model_ = fit(model_, iterations, solved_).model;
-  refresh();
-}
-
 void TrialFit::settle(const RefinedModel& start) {
   model_ = start;
-  for (int round = 0; round < 2; ++round) refit(12);
+  for (int round = 0; round < 2; ++round) {
+    model_ = fit(model_, 12, solved_).model;
+    refresh();
+  }
 }
 
-/// Fits the soil to rowsOfSoil().
+/// Fits the soil to rowsOfSoil(). Effects are fitted only if these are all rows, because straight wheels do not
+/// determine the effects of a slip angle.
 void TrialFit::fitSoil(const std::function<bool(double)>& go_on) {
   const Trial all = rows_.trial();
   const std::vector<char> straight = rowsOfSoil(all);
   const bool part = std::find(straight.begin(), straight.end(), 0) != straight.end();
   if (part) setRows(subset(all, straight));
-  for (int round = 0; round < 3 && go_on(0.0); ++round) refit(30);
+  for (int round = 0; round < 3 && go_on(0.0); ++round) {
+    FitPlan plan = planFor(model_);
+    plan.iterations = 30;
+    if (part) std::erase_if(plan.free, [](const FittedParameter& p) { return p.effect >= 0; });
+    model_ = fitModel(model_, rows_.trial(), rows_.whitening(), plan, solved_).model;
+    refresh();
+  }
   if (part) setRows(all);
 }
 

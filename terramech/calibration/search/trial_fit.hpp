@@ -117,7 +117,6 @@ class TrialFit {
   std::array<double, kChannels> noiseFloor(const SensorNoise& noise);
 
  private:
-  void refit(int iterations);
   FitPlan planFor(const RefinedModel& model) const;
   void fitSoil(const std::function<bool(double)>& go_on);
   void setRows(const Trial& trial);

@@ -10,19 +10,20 @@
 
 namespace talus::terramech {
 
-inline Telemetry telemetryOf(const blind::World& world) {
+/// Telemetry of the training rows or of the held-out rows of a world; only the former have runs and sites.
+inline Telemetry telemetryOf(const blind::World& world, const std::vector<std::vector<double>>& rows) {
   Telemetry t;
   t.source = "world";
   for (std::size_t k = 0; k < world.columns.size(); ++k) {
     t.numbers.push_back({world.columns[k], {}});
-    for (const auto& row : world.rows) t.numbers.back().values.push_back(row[k]);
+    for (const auto& row : rows) t.numbers.back().values.push_back(row[k]);
   }
-  if (!world.run.empty()) {
+  if (world.run.size() == rows.size()) {
     t.words.push_back({"run", {}});
     for (int run : world.run) t.words.back().values.push_back("run" + std::to_string(run));
   }
-  if (!world.site.empty()) t.words.push_back({"site", world.site});
-  for (std::size_t row = 0; row < world.rows.size(); ++row) t.lines.push_back(row + 2);
+  if (world.site.size() == rows.size()) t.words.push_back({"site", world.site});
+  for (std::size_t row = 0; row < rows.size(); ++row) t.lines.push_back(row + 2);
   return t;
 }
 
@@ -44,7 +45,7 @@ inline RefinedModel baseOf(const blind::Ground& g) {
 inline TraceResult traced(const blind::World& world) {
   const RefinedModel base = baseOf(world.ground);
   TraceOptions options;
-  return traceResiduals(base, makeTrial(telemetryOf(world), base), options);
+  return traceResiduals(base, makeTrial(telemetryOf(world, world.rows), base), options);
 }
 
 inline std::vector<blind::Claim> claims(const TraceResult& result) {

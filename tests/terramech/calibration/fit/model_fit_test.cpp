@@ -64,8 +64,9 @@ TEST(ModelFit, MisfitFactorReducesWeightOfRowsAgainstPrior) {
                .misfit = 4.0,
                .iterations = 30};
   // Closed form: the rows have the weight 16 / 4, the prior 16: (4 * 3 + 16 * 1) / 20.
-  EXPECT_NEAR(fitModel(rows.model, rows.trial, rows.white, plan, solved).model.effects[0].parameters[0], 1.4,
-              1e-3);
+  const RefinedModel fitted = fitModel(rows.model, rows.trial, rows.white, plan, solved).model;
+  EXPECT_NEAR(fitted.effects[0].parameters[0], 1.4, 1e-3);
+  EXPECT_NEAR(parameterCovariance(fitted, rows.trial, rows.white, plan, solved)(0, 0), 1.0 / 20.0, 1e-4);
   // Closed form: residuals 3 N +- 0.5 N with a noise of 1 N have the mean square 9.25; a tenth of them is
   // below the noise.
   const Eigen::VectorXd white =

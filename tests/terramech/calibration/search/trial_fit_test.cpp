@@ -36,6 +36,31 @@ TEST(TrialFit, GivenSoilIsKeptAndUnknownSoilIsFitted) {
   EXPECT_NEAR(fitted.model().soil.friction_angle_rad, 0.55, 0.05);
 }
 
+// Property: an absolute error of slip of 0.02 is recovered although no error is stated.
+TEST(TrialFit, UnstatedSlipErrorMayBeAbsolute) {
+  MadeRows rows(wheelColumns());
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> slip_error(0.0, 0.02);
+  for (int k = 0; k < 240; ++k) {
+    std::vector<double> row = wheelRow(madeSand(), 50.0 + (k * 7) % 60, 0.03 + 0.0034 * k, 0.02, random);
+    row[1] += slip_error(random);
+    rows.add(row);
+  }
+  const TrialFit fit(sand(), makeTrial(rows.telemetry(), sand()), true, always);
+  EXPECT_NEAR(fit.model().noise.slipStd(0.1), 0.02, 0.005);
+}
+
+// Property: rows of straight wheels do not determine an effect of the slip angle, which keeps its value.
+TEST(TrialFit, FitToStraightRowsKeepsEffectsOfTheSlipAngle) {
+  RefinedModel model = sand();
+  model.effects.push_back(
+      {.name = "side_ploughing", .covariate = "slip_angle_rad", .parameters = {0.7, 1.0}});
+  Trial trial = noisyTrial(model, 0.02);
+  for (std::size_t row = 0; row < trial.states.size(); row += 2) trial.states[row].slip_angle_rad = 0.5;
+  const TrialFit fit(model, trial, true, always);
+  EXPECT_EQ(fit.model().effects[0].parameters, model.effects[0].parameters);
+}
+
 // Property: the model that generated the rows has a higher score than a model of another soil, for the noise
 // of either model.
 TEST(TrialFit, GeneratingModelScoresHigherThanAnotherSoil) {
