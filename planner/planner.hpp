@@ -182,7 +182,8 @@ class Planner {
   Route plan(planner::WindowedMap& map, const PlanRequest& request);
 
   /// Returns what a polyline of at least one point costs on a map under the cost function of the planners. Of the
-  /// request, `chassis` (checked, too), `prove` (also plans between the ends) and `watch` are used.
+  /// request, `chassis` (checked, too), `prove` (also plans between the ends) and `watch` are used. Without `prove` the
+  /// lower bound is that of the lowest cost per metre (planner::straightBoundOver_J).
   Score score(const costmap::TraversabilityMap& map, const std::vector<maps::Point>& path,
               PlanRequest request = {});
 

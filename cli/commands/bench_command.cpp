@@ -181,11 +181,7 @@ int run(const BenchOptions& options, Context& context) {
   const auto runs = runsOf(plan, results);
   if (runs.size() < planner::jobsOf(plan).size()) return cancelled(options, plan, runs, made, context);
   write(options.folder, plan, runs);
-  const auto lines = compared(plan, runs);
-  if (context.json)
-    printJson(asJson(lines, drivesOf(plan, runs)));
-  else
-    print(benchText(plan, runs));
+  context.answer(asJson(compared(plan, runs), drivesOf(plan, runs)), benchText(plan, runs));
   return Exit::kDone;
 }
 

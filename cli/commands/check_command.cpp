@@ -135,11 +135,9 @@ int run(const CheckOptions& options, Context& context) {
                           wrong["expect"].get<std::string>());
     watch.report(static_cast<double>(k + 1) / static_cast<double>(cases.size()));
   }
-  if (context.json)
-    printJson({{"passed", passed}, {"failed", failed}, {"known_failures", known}});
-  else
-    print(text +
-          fmt::format("{} passed, {} failed, {} known failures\n", passed, failed.size(), known.size()));
+  context.answer(
+      {{"passed", passed}, {"failed", failed}, {"known_failures", known}},
+      text + fmt::format("{} passed, {} failed, {} known failures\n", passed, failed.size(), known.size()));
   return failed.empty() ? Exit::kDone : Exit::kNo;
 }
 

@@ -157,34 +157,23 @@ std::optional<SimulatedWorlds> simulated(const Campaigning& on, const std::vecto
   return driven;
 }
 
-// Prints the report; JSON includes the failed worlds.
-template <typename Results>
-int show(const Results& results, const SimulatedWorlds& driven, const Campaigning& on) {
-  if (!on.campaign.leads()) return Exit::kDone;
-  if (on.context.stop.stop_requested()) return Exit::kCancelled;
-  if (!on.context.json) {
-    print(asText(results));
-    return Exit::kDone;
-  }
-  nlohmann::ordered_json json = asJson(results);
-  json["failed"] = nlohmann::ordered_json::array();
-  for (const auto& failure : driven.failures)
-    json["failed"].push_back({{"world", failure.world}, {"reason", failure.reason}});
-  printJson(json);
-  return Exit::kDone;
-}
-
-int runAll(const Campaigning& on, const DriveCommandOptions& options) {
-  const auto driven = simulated(on, {kBeliefs.begin(), kBeliefs.end()}, options);
-  if (!driven) return Exit::kDone;
-  BeliefResults results;
-  std::copy(driven->results.begin(), driven->results.end(), results.begin());
-  return show(results, *driven, on);
-}
-
+// Simulates many worlds under one belief or all of them; JSON includes the failed worlds.
 int runMany(const Campaigning& on, const DriveCommandOptions& options) {
-  const auto driven = simulated(on, {*findBelief(options.belief)}, options);
-  return driven ? show(driven->results[0], *driven, on) : Exit::kDone;
+  const bool all = options.belief == "all";
+  const auto driven = simulated(on,
+                                all ? std::vector<SoilKnowledge>(kBeliefs.begin(), kBeliefs.end())
+                                    : std::vector<SoilKnowledge>{*findBelief(options.belief)},
+                                options);
+  if (!driven || !on.campaign.leads()) return Exit::kDone;
+  if (on.context.stop.stop_requested()) return Exit::kCancelled;
+  BeliefResults beliefs;
+  std::copy(driven->results.begin(), driven->results.end(), beliefs.begin());
+  nlohmann::ordered_json json = all ? asJson(beliefs) : asJson(beliefs[0]);
+  json["failed"] = nlohmann::ordered_json::array();
+  for (const auto& failure : driven->failures)
+    json["failed"].push_back({{"world", failure.world}, {"reason", failure.reason}});
+  on.context.answer(json, all ? asText(beliefs) : asText(beliefs[0]));
+  return Exit::kDone;
 }
 
 int runOne(const planner::SimulationSite& site, const DriveCommandOptions& options, const Context& context,
@@ -197,17 +186,13 @@ int runOne(const planner::SimulationSite& site, const DriveCommandOptions& optio
   if (!options.html.empty()) saveTraversePage(options.html, site, belief, drive, originOf(ground, context));
   if (!options.telemetry.empty())
     saveTelemetry(options.telemetry, drive.result.drive, ground.map.model().rover());
-  if (context.json) {
-    nlohmann::ordered_json json = asJson(drive.result);
-    const planner::PredictionErrors errors = drive.log.errors();
-    json["prediction"] = {{"steps", errors.steps},
-                          {"slip_rmse", errors.slip_rmse},
-                          {"energy_rmse", errors.energy_rmse},
-                          {"energy_error", errors.energy_error}};
-    printJson(json);
-  } else {
-    print(asText(drive.result) + fmt::format("{:<24} {}\n", "predicted", predictionText(drive)));
-  }
+  nlohmann::ordered_json json = asJson(drive.result);
+  const planner::PredictionErrors errors = drive.log.errors();
+  json["prediction"] = {{"steps", errors.steps},
+                        {"slip_rmse", errors.slip_rmse},
+                        {"energy_rmse", errors.energy_rmse},
+                        {"energy_error", errors.energy_error}};
+  context.answer(json, asText(drive.result) + fmt::format("{:<24} {}\n", "predicted", predictionText(drive)));
   return drive.result.drive.outcome == planner::Outcome::Reached ? Exit::kDone : Exit::kNo;
 }
 
@@ -250,8 +235,7 @@ int run(DriveCommandOptions& options, Context& context) {
                    .sensors = sensorsOf(options),
                    .planner = plugin ? byPlugin : std::function<planner::Plan(const planner::Problem&)>()});
   const Campaigning on{site, campaign, context, hashOf(ground, options.truth, context)};
-  if (options.belief == "all") return runAll(on, options);
-  if (options.worlds > 1) return runMany(on, options);
+  if (options.belief == "all" || options.worlds > 1) return runMany(on, options);
   return campaign.leads() ? runOne(site, options, context, ground) : Exit::kDone;
 }
 

@@ -256,8 +256,8 @@ void writePage(const EstimateCommand& options, const SoilEstimate& e,
   HtmlReport page("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
   page.paragraph(
       fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
-  page.table({"quantity", "value", "standard deviation"},
-             {{"cohesion [kPa]", fmt::format("{:.3f}", 1e-3 * e.cohesion_Pa),
+  page.table({{"quantity", "value", "standard deviation"},
+              {"cohesion [kPa]", fmt::format("{:.3f}", 1e-3 * e.cohesion_Pa),
                fmt::format("{:.3f}", 1e-3 * std::sqrt(e.covariance(0, 0)))},
               {"tan(friction angle)", fmt::format("{:.4f}", e.tan_friction),
                fmt::format("{:.4f}", std::sqrt(e.covariance(1, 1)))},

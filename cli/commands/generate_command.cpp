@@ -1,8 +1,11 @@
 // talus generate KIND: generates an example site with all its layers.
+#include <algorithm>
 #include <array>
 #include <filesystem>
-#include <optional>
+#include <string_view>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,19 +15,15 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/limits.hpp>
-#include <talus/common/nearest_name.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/sites/site_generator.hpp>
-#include <talus/terramech/io/yaml_fields.hpp>
 
 namespace talus::cli {
 namespace {
 
 struct GenerateOptions {
-  std::string site;                 ///< a site kind, or the path of a site description
-  std::optional<std::string> size;  ///< as entered
-  std::optional<double> resolution_m;
-  std::string output;
+  std::string kind, size, output;
+  maps::SiteOptions site;
 };
 
 // Soil of each class. The loose lunar soils are ours, weaker than the nominal soil within the ranges of
@@ -45,13 +44,9 @@ constexpr const char* kMartianSoils = R"(terrain_classes:
   4: bedrock
 )";
 
-struct Size {
-  int width, height;
-};
-
 // Parses a size in cells, "512" or "512x400".
-Size parseSize(const std::string& text) {
-  const auto refuse = [&]() -> Size {
+std::pair<int, int> parseSize(const std::string& text) {
+  const auto refuse = [&]() -> std::pair<int, int> {
     throw InputError(
         {"--size " + text, "is not a size in cells", "write N or WIDTHxHEIGHT, 8 to 20000 each"});
   };
@@ -59,7 +54,7 @@ Size parseSize(const std::string& text) {
     const bool digits =
         !word.empty() && word.size() <= 5 && word.find_first_not_of("0123456789") == word.npos;
     const int n = digits ? std::stoi(word) : 0;
-    return n >= 8 && n <= 20000 ? n : refuse().width;
+    return n >= 8 && n <= 20000 ? n : refuse().first;
   };
   const std::size_t cross = text.find('x');
   if (cross == text.npos) return {number(text), number(text)};
@@ -91,77 +86,42 @@ void write(const maps::Site& site, maps::SiteKind kind, const Paths& paths) {
   for (OutputFile* file : {&map, &classes, &rocks, &soils}) file->commit();
 }
 
-bool isDescription(const std::string& site) {
-  return site.ends_with(".yaml") || site.ends_with(".yml");
-}
-
-constexpr std::array<std::pair<const char*, maps::SiteKind>, 3> kKinds{{{"craters", maps::SiteKind::Craters},
-                                                                        {"dunes", maps::SiteKind::Dunes},
-                                                                        {"rocks", maps::SiteKind::Rocks}}};
-
-maps::SiteKind siteKind(const std::string& name) {
-  for (const auto& [word, kind] : kKinds)
-    if (name == word) return kind;
-  const std::string near = nearestName(name, {"craters", "dunes", "rocks"});
-  throw InputError({"site '" + name + "'", "is not a kind of site",
-                    near.empty() ? "choose craters, dunes or rocks" : "did you mean '" + near + "'?"});
-}
-
-// Returns the options of a YAML description.
-maps::SiteOptions loadSite(const std::string& path) {
-  const terramech::YamlFields file = terramech::YamlFields::file(path);
-  file.only({"site"});
-  const terramech::YamlFields fields = file.fields("site");
-  fields.only({"kind", "width", "height", "resolution_m", "seed"});
-  maps::SiteOptions site;
-  site.kind = siteKind(fields.word("kind"));
-  site.width = fields.integer("width", site.width);
-  site.height = fields.integer("height", site.width);
-  site.resolution_m = fields.number("resolution_m", site.resolution_m);
-  const int seed = fields.integer("seed", 1);
-  if (seed < 0) fields.refuse("seed", "seed = " + std::to_string(seed) + ", must be >= 0", "");
-  site.seed = static_cast<std::uint64_t>(seed);
-  return site;
-}
-
-// Options from a site description or a kind; arguments of the call override a description.
-maps::SiteOptions siteOptions(const GenerateOptions& options, const Context& context) {
-  maps::SiteOptions out;
-  if (isDescription(options.site)) {
-    out = loadSite(options.site);
-  } else {
-    out.kind = siteKind(options.site);
-    out.seed = context.seed;
-  }
-  if (options.size) {
-    const Size size = parseSize(*options.size);
-    out.width = size.width;
-    out.height = size.height;
-  }
-  if (options.resolution_m) out.resolution_m = *options.resolution_m;
-  out.threads = context.workers();
-  return out;
-}
+constexpr std::array<std::pair<std::string_view, maps::SiteKind>, 3> kKinds{
+    {{"craters", maps::SiteKind::Craters},
+     {"dunes", maps::SiteKind::Dunes},
+     {"rocks", maps::SiteKind::Rocks}}};
 
 void bind(CLI::App& command, GenerateOptions& options) {
-  command
-      .add_option("KIND", options.site,
-                  "craters (Moon), dunes or rocks (Mars), or a YAML description (see maps/sites)")
-      ->required();
+  std::vector<std::string> names;
+  for (const auto& [name, kind] : kKinds) names.emplace_back(name);
+  command.add_option("KIND", options.kind, "craters (Moon), dunes or rocks (Mars)")
+      ->required()
+      ->check(CLI::IsMember(names));
   addOption(command, "--size N", options.size, "side in cells, or WIDTHxHEIGHT (default: 512)");
-  addOption(command, "--resolution METRES", options.resolution_m, "cell size (default: 1)")
-      ->check(CLI::Range(0.01, 1000.0));
+  addOption(command, "--resolution METRES", options.site.resolution_m, "cell size")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str();
   addOutput(command, "-o,--output FILE.tif", options.output,
             "elevation map to write; its layers are written to the same folder")
       ->required();
 }
 
+maps::SiteOptions siteOf(const GenerateOptions& options, const Context& context) {
+  maps::SiteOptions site = options.site;
+  site.kind =
+      std::ranges::find(kKinds, options.kind, &std::pair<std::string_view, maps::SiteKind>::first)->second;
+  if (!options.size.empty()) std::tie(site.width, site.height) = parseSize(options.size);
+  site.seed = context.seed;
+  site.threads = context.workers();
+  return site;
+}
+
 int run(const GenerateOptions& options, Context& context) {
-  const maps::SiteOptions wanted = siteOptions(options, context);
+  const maps::SiteOptions wanted = siteOf(options, context);
   const Paths paths = pathsOf(options.output);
   if (!context.force)
     for (const std::string& path : {paths.classes, paths.rocks, paths.soils})
-      checkOutput(path, {options.site, options.output});
+      checkOutput(path, {options.output});
   const OutputFile folder_can_be_written(options.output);
   constexpr double kBytesPerCell = 32.0;  // measured
   requireMemory(kBytesPerCell * wanted.width * wanted.height, "--size");

@@ -172,7 +172,15 @@ constexpr Topic kTopics[] = {
     {"formats", "keys and columns of files", [](const CLI::App&) { return formatsText(); }},
     {"soils", "soils of the library", [](const CLI::App&) { return librarySoilsText(); }},
     {"rovers", "rovers of the library", [](const CLI::App&) { return libraryRoversText(); }},
-    {"missions", "a mission file with every key", [](const CLI::App&) { return missionText({}); }},
+    {"missions", "a mission file with every key",
+     [](const CLI::App&) {
+       return missionText({{"dem", "dem.tif"},
+                           {"rover", "mer"},
+                           {"soil", "mars_blocky"},
+                           {"start", "100,100"},
+                           {"goal", "900,900"},
+                           {"output", "route.geojson"}});
+     }},
     {"man", "manual page, for man", manualPage},
     {"bash-completion", "script for bash", bashCompletion},
 };

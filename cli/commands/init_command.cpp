@@ -110,25 +110,28 @@ int run(const InitOptions& options, Context& context) {
   const auto relative = [&](const std::string& path) {
     return path.empty() ? path : fs::weakly_canonical(path, error).lexically_relative(folder).string();
   };
-  const MissionDraft draft{.dem = relative(options.map.path),
-                           .terrain = relative(choices.classes),
-                           .rocks = relative(choices.rocks),
-                           .resolution_m = options.map.read.resolution_m.value_or(0.0),
-                           .ignore_crs = options.map.read.ignore_crs,
-                           .rover = rover,
-                           .soil = choices.soil,
-                           .soils = relative(choices.soils),
-                           .start = placeAt(cells, map.grid(), 0.25),
-                           .goal = placeAt(cells, map.grid(), 0.75),
-                           .output = fs::path(options.output).stem().string() + "_route.geojson"};
-  writeFile(options.output, missionText(draft));
-  std::vector<std::string> layers{draft.terrain, draft.soils, draft.rocks};
+  std::map<std::string, nlohmann::json> mission{
+      {"dem", relative(options.map.path)},
+      {"terrain", relative(choices.classes)},
+      {"rocks", relative(choices.rocks)},
+      {"rover", rover},
+      {"soil", choices.soil},
+      {"soils", relative(choices.soils)},
+      {"start", placeAt(cells, map.grid(), 0.25)},
+      {"goal", placeAt(cells, map.grid(), 0.75)},
+      {"output", fs::path(options.output).stem().string() + "_route.geojson"}};
+  if (options.map.read.resolution_m) mission["resolution_m"] = *options.map.read.resolution_m;
+  if (options.map.read.ignore_crs) mission["ignore_crs"] = true;
+  writeFile(options.output, missionText(mission));
+  std::vector<std::string> layers{mission["terrain"], mission["soils"], mission["rocks"]};
   std::erase(layers, "");
-  context.answer(
-      {{"mission", options.output}, {"start", draft.start}, {"goal", draft.goal}, {"layers", layers}},
-      fmt::format("{}mission     {}; set start and goal, then: talus plan {}\n",
-                  layers.empty() ? "" : fmt::format("layers      {}\n", fmt::join(layers, ", ")),
-                  options.output, options.output));
+  context.answer({{"mission", options.output},
+                  {"start", mission["start"]},
+                  {"goal", mission["goal"]},
+                  {"layers", layers}},
+                 fmt::format("{}mission     {}; set start and goal, then: talus plan {}\n",
+                             layers.empty() ? "" : fmt::format("layers      {}\n", fmt::join(layers, ", ")),
+                             options.output, options.output));
   return Exit::kDone;
 }
 

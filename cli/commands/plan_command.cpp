@@ -17,6 +17,7 @@
 #include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/plot.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/ground_options.hpp>
@@ -200,25 +201,6 @@ struct PlacePair {
   std::optional<double> goal_heading_rad;
 };
 
-constexpr std::array kColumns{"start_x_m", "start_y_m",         "goal_x_m",
-                              "goal_y_m",  "start_heading_rad", "goal_heading_rad"};
-constexpr std::size_t kNeeded = 4;
-constexpr double kGreatestPlace_m = 1e9;  // as in telemetry; beyond any map, and any heading
-
-// Returns the index of each column in the file; empty for a missing heading column.
-std::array<std::optional<std::size_t>, kColumns.size()> columnsOf(const std::string& path,
-                                                                  const std::vector<std::string>& header) {
-  std::array<std::optional<std::size_t>, kColumns.size()> found;
-  for (std::size_t i = 0; i < header.size(); ++i)
-    for (std::size_t k = 0; k < kColumns.size(); ++k)
-      if (header[i] == kColumns[k]) found[k] = i;
-  for (std::size_t k = 0; k < kNeeded; ++k)
-    if (!found[k])
-      throw InputError({path + ":1", fmt::format("has no column {}", kColumns[k]),
-                        "give start_x_m, start_y_m, goal_x_m, goal_y_m"});
-  return found;
-}
-
 Json planned(const PlacePair& pair, const std::shared_ptr<const costmap::CostGrid>& map, PlanRequest request,
              Planner& planner) {
   request.watch.progress = {};
@@ -236,35 +218,46 @@ Json planned(const PlacePair& pair, const std::shared_ptr<const costmap::CostGri
 std::string cell(const Json& line, const char* key) {
   const auto value = line.find(key);
   if (value == line.end() || value->is_null()) return {};
-  return value->is_string() ? terramech::csvField(value->get<std::string>()) : jsonText(*value);
+  return value->is_string() ? value->get<std::string>() : jsonText(*value);
 }
 
 /// Returns the pairs of starts and goals of a CSV table with the columns start_x_m, start_y_m, goal_x_m,
 /// goal_y_m and, if present, start_heading_rad and goal_heading_rad. @throws InputError with file, line and
 /// column
 std::vector<PlacePair> readPairs(const std::string& path) {
+  constexpr double kGreatest = 1e9;  // as in telemetry; beyond any map, and any heading
   terramech::CsvReader reader(path);
-  const auto columns = columnsOf(path, reader.header());
-  std::vector<PlacePair> pairs;
   terramech::CsvRow row;
+  const auto refuse = [&](const std::string& reason, const char* remedy) {
+    throw InputError({fmt::format("{}:{}", path, std::max<std::size_t>(1, row.line)), reason, remedy});
+  };
+  const auto column = [&](const char* name) { return std::ranges::find(reader.header(), name); };
+  const auto number = [&](const char* name) {
+    const std::string& field = row.fields[static_cast<std::size_t>(column(name) - reader.header().begin())];
+    double value = 0.0;
+    if (!terramech::parseNumber(field, value) || !std::isfinite(value))
+      refuse(fmt::format("{} = '{}' is not a finite number", name, field), "fix the line");
+    if (std::abs(value) > kGreatest)
+      refuse(fmt::format("{} = {:g}, must be within {:g} of 0", name, value, kGreatest),
+             "give metres and radians");
+    return value;
+  };
+  const auto heading = [&](const char* name) -> std::optional<double> {
+    const auto at = column(name);
+    if (at == reader.header().end()) return std::nullopt;
+    if (row.fields[static_cast<std::size_t>(at - reader.header().begin())].empty()) return std::nullopt;
+    return number(name);
+  };
+  for (const char* name : {"start_x_m", "start_y_m", "goal_x_m", "goal_y_m"})
+    if (column(name) == reader.header().end())
+      refuse(fmt::format("has no column {}", name), "give start_x_m, start_y_m, goal_x_m, goal_y_m");
+  std::vector<PlacePair> pairs;
   while (reader.next(row)) {
-    const std::string where = fmt::format("{}:{}", path, row.line);
-    if (!row.fault.empty()) throw InputError({where, row.fault, "fix the line"});
-    std::array<std::optional<double>, kColumns.size()> values;
-    for (std::size_t k = 0; k < kColumns.size(); ++k) {
-      double value = 0.0;
-      const std::string field = columns[k] ? row.fields[*columns[k]] : "";
-      if (field.empty() && k >= kNeeded) continue;
-      if (!terramech::parseNumber(field, value) || !std::isfinite(value))
-        throw InputError(
-            {where, fmt::format("{} = '{}' is not a finite number", kColumns[k], field), "fix the line"});
-      if (std::abs(value) > kGreatestPlace_m)
-        throw InputError(
-            {where, fmt::format("{} = {:g}, must be within {:g} of 0", kColumns[k], value, kGreatestPlace_m),
-             "give metres and radians"});
-      values[k] = value;
-    }
-    pairs.push_back({{*values[0], *values[1]}, {*values[2], *values[3]}, values[4], values[5]});
+    if (!row.fault.empty()) refuse(row.fault, "fix the line");
+    pairs.push_back({{number("start_x_m"), number("start_y_m")},
+                     {number("goal_x_m"), number("goal_y_m")},
+                     heading("start_heading_rad"),
+                     heading("goal_heading_rad")});
   }
   if (pairs.empty()) throw InputError({path, "contains no pair", "add one line per start and goal"});
   return pairs;
@@ -277,15 +270,12 @@ std::string pairsCsv(const std::vector<Json>& lines) {
                             "energy_J",      "time_s",      "length_m", "max_slip",
                             "max_slope_rad", "lower_bound", "gap",      "immobilisation_risk",
                             "reason"};
-  std::string text;
-  for (const char* key : keys) text += (text.empty() ? "" : ",") + std::string(key);
-  text += "\n";
+  Table table{{keys.begin(), keys.end()}};
   for (const Json& line : lines) {
-    std::string row;
-    for (const char* key : keys) row += (key == keys[0] ? "" : ",") + cell(line, key);
-    text += row + "\n";
+    table.emplace_back();
+    for (const char* key : keys) table.back().push_back(cell(line, key));
   }
-  return text;
+  return csvText(table);
 }
 
 // Plans many routes on one map, distributed over the ranks of an MPI run. An error in one pair becomes its reason and
@@ -389,30 +379,24 @@ void refuseInWindows(const PlanOptions& options) {
                     "read a part with --window, or the whole with a greater --in-memory"});
 }
 
-int runInWindows(const PlanOptions& options, Planner& planner, const Context& context) {
-  refuseInWindows(options);
-  Ground overview = readOverview(options.ground, context);
-  if (context.stop.stop_requested()) return Exit::kCancelled;
-  planner::WindowedMap map = windowsOn(options.ground, overview, context);
-  PlanRequest request = requestOf(options, planner.capabilities(), overview, context);
-  Planned route = timedPlan(std::move(overview), std::move(request),
-                            [&](const PlanRequest& asked) { return planner.plan(map, asked); });
-  if (context.stop.stop_requested() && route.route.vertices.empty()) return Exit::kCancelled;
-  return finish(options, route, context);
-}
-
 // After a stopped call has printed its results, remaining work may be terminated.
 void letEnd(const Context& context) {
   std::fflush(stdout);
   if (context.answers_stop) *context.answers_stop = false;
 }
 
-int runWhole(const PlanOptions& options, Planner& planner, const Context& context) {
-  Ground ground = readGround(options.ground, context);
+// Plans one route, on the whole map or in windows of a large one.
+int runOne(const PlanOptions& options, bool windows, Planner& planner, const Context& context) {
+  if (windows) refuseInWindows(options);
+  Ground ground = windows ? readOverview(options.ground, context) : readGround(options.ground, context);
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  std::optional<planner::WindowedMap> parts;
+  if (windows) parts.emplace(windowsOn(options.ground, ground, context));
   PlanRequest request = requestOf(options, planner.capabilities(), ground, context);
   const auto map = ground.map.published();
-  Planned route = timedPlan(std::move(ground), std::move(request),
-                            [&](const PlanRequest& asked) { return planner.plan(map, asked); });
+  Planned route = timedPlan(std::move(ground), std::move(request), [&](const PlanRequest& asked) {
+    return parts ? planner.plan(*parts, asked) : planner.plan(map, asked);
+  });
   if (context.stop.stop_requested() && route.route.vertices.empty()) return Exit::kCancelled;
   const int code = finish(options, route, context);
   if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);
@@ -450,10 +434,10 @@ int run(PlanOptions& options, Context& context) {
   if (!context.force) checkFormat(options.output, options.pairs.empty() ? planner::kRouteFiles : "FILE.csv");
   requirePlaces(options);
   Planner planner = plannerOf(options, context);
-  if (!(options.corridor_percent > 0.0) && !options.ground.is_cost &&
-      needsWindows(options.ground, options.in_memory))
-    return runInWindows(options, planner, context);
-  return options.pairs.empty() ? runWhole(options, planner, context) : runPairs(options, planner, context);
+  const bool windows = !(options.corridor_percent > 0.0) && !options.ground.is_cost &&
+                       needsWindows(options.ground, options.in_memory);
+  return windows || options.pairs.empty() ? runOne(options, windows, planner, context)
+                                          : runPairs(options, planner, context);
 }
 
 }  // namespace

@@ -118,17 +118,13 @@ int run(ScoreOptions& options, Context& context) {
     request.chassis = std::make_shared<const planner::Chassis>(*std::move(chassis));
   const Score score = Planner({.threads = context.workers()}).score(ground.map, points, request);
   if (context.stop.stop_requested()) return Exit::kCancelled;
-  if (context.json) {
-    auto json = summaryJson(score);
-    if (!score.found()) json["status"] = "infeasible";
-    json["violations"] = scoreJson(score.violations);
-    if (score.best)
-      json["best_cost"] = score.best->found() ? nlohmann::ordered_json(score.best->cost) : nullptr;
-    json["seconds"] = {{"load", ground.load_s}, {"costmap", ground.build_s}};
-    printJson(json);
-  } else {
-    print(scoreText(score) + (score.best ? betterText(*score.best, score.cost) : ""));
-  }
+  auto json = summaryJson(score);
+  if (!score.found()) json["status"] = "infeasible";
+  json["violations"] = scoreJson(score.violations);
+  if (score.best)
+    json["best_cost"] = score.best->found() ? nlohmann::ordered_json(score.best->cost) : nullptr;
+  json["seconds"] = {{"load", ground.load_s}, {"costmap", ground.build_s}};
+  context.answer(json, scoreText(score) + (score.best ? betterText(*score.best, score.cost) : ""));
   return score.found() ? Exit::kDone : Exit::kNo;
 }
 

@@ -73,10 +73,7 @@ int holdOutRows(const TraceCommandOptions& options, const terramech::Telemetry& 
     all.push_back(terramech::traceWithout(rows.model, rows.trial, left, search, watch));
     if (watch.stopped()) return Exit::kCancelled;
   }
-  if (context.json)
-    printJson({{"hold_out", leftOutJson(all)}});
-  else
-    print(leftOutText(all));
+  context.answer({{"hold_out", leftOutJson(all)}}, leftOutText(all));
   return Exit::kDone;
 }
 
@@ -154,7 +151,7 @@ int run(const TraceCommandOptions& options, Context& context) {
     const auto trace = terramech::traceFormula(
         terramech::readTelemetry(tableFile(options.telemetry, options.columns, context)), options.formula,
         {.significance = options.significance, .seed = context.seed});
-    context.json ? printJson(formulaJson(trace)) : print(formulaText(trace));
+    context.answer(formulaJson(trace), formulaText(trace));
     return Exit::kDone;
   }
   const terramech::TableTraceOptions how{
@@ -175,15 +172,12 @@ int run(const TraceCommandOptions& options, Context& context) {
     writeFile(options.runs_out, proposalTable(runs, trace.result));
   const auto scores =
       options.score.empty() ? std::vector<terramech::CauseScore>{} : scored(options, trace, context);
-  if (context.json) {
-    nlohmann::ordered_json answer = traceJson(trace);
-    if (options.propose > 0) answer["proposals"] = proposalsJson(runs);
-    if (!scores.empty()) answer["scores"] = scoresJson(scores);
-    printJson(answer);
-  } else {
-    print(traceText(trace) + (options.propose > 0 ? proposalText(runs, trace.result.trial) : "") +
-          causeScoreText(scores));
-  }
+  nlohmann::ordered_json json = traceJson(trace);
+  if (options.propose > 0) json["proposals"] = proposalsJson(runs);
+  if (!scores.empty()) json["scores"] = scoresJson(scores);
+  context.answer(json, traceText(trace) +
+                           (options.propose > 0 ? proposalText(runs, trace.result.trial) : "") +
+                           causeScoreText(scores));
   return trace.applies.applies ? Exit::kDone : Exit::kNo;
 }
 

@@ -176,8 +176,8 @@ Scene routeScene(const ViewOptions& options, const Context& context) {
                 : map ? mapScene(titled, *map, context)
                       : sceneOf(file.route, {.title = titled.title});
   if (map) requireInside(scene, file.route, *map, options.file.path);
+  if (map || !options.others.empty()) scene.facts.clear();  // rover and soil are in the provenance, too
   if (!options.others.empty()) {
-    if (!map) scene.facts.clear();
     compareWithOthers(scene, options, file, map.value_or(""));
   } else {
     if (map) addRoute(scene, file.route);
@@ -207,13 +207,9 @@ int run(const ViewOptions& options, Context& context) {
   addImage(scene, options.image);
   if (context.stop.stop_requested()) return Exit::kCancelled;
   saveScene(scene, html, options.png);
-  if (!context.json) {
-    print(comparisonText(scene) + fmt::format("page        {}\n", html.string()));
-    return Exit::kDone;
-  }
   nlohmann::ordered_json json{{"html", html.string()}, {"facts", nlohmann::ordered_json(scene.facts)}};
   for (const ComparedFact& fact : scene.comparison) json["comparison"][fact.name] = fact.values;
-  printJson(json);
+  context.answer(json, comparisonText(scene) + fmt::format("page        {}\n", html.string()));
   return Exit::kDone;
 }
 

@@ -9,6 +9,7 @@
 
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/plot.hpp>
+#include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {
 
@@ -75,6 +76,32 @@ bool isNumber(const std::string& text) {
 
 }  // namespace
 
+std::string tableText(const Table& table, std::size_t indent) {
+  std::string text;
+  std::vector<std::size_t> widths(table.front().size());
+  for (const auto& row : table)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  for (const auto& row : table) {
+    text += std::string(indent, ' ');
+    for (std::size_t i = 0; i < row.size(); ++i)
+      text += fmt::format(fmt::runtime(isNumber(table.back()[i]) ? "{:>{}}{}" : "{:<{}}{}"), row[i],
+                          widths[i], i + 1 < row.size() ? "  " : "");
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string csvText(const Table& table) {
+  std::string text;
+  for (const auto& row : table) {
+    std::string line;
+    for (const std::string& cell : row) line += ',' + terramech::csvField(cell);
+    text += line.substr(1) + '\n';
+  }
+  return text;
+}
+
 void HtmlReport::heading(const std::string& text) {
   body_ += fmt::format("<h2>{}</h2>\n", escaped(text));
 }
@@ -83,15 +110,14 @@ void HtmlReport::paragraph(const std::string& text) {
   body_ += fmt::format("<p>{}</p>\n", escaped(text));
 }
 
-void HtmlReport::table(const std::vector<std::string>& header,
-                       const std::vector<std::vector<std::string>>& rows) {
-  body_ += "<div class=\"table\"><table>\n<tr>";
-  for (const std::string& cell : header) body_ += fmt::format("<th>{}</th>", escaped(cell));
-  body_ += "</tr>\n";
-  for (const auto& row : rows) {
+void HtmlReport::table(const Table& table) {
+  body_ += "<div class=\"table\"><table>\n";
+  for (const auto& row : table) {
+    const bool head = &row == &table.front();
     body_ += "<tr>";
     for (const std::string& cell : row)
-      body_ += fmt::format("<td{}>{}</td>", isNumber(cell) ? " class=\"number\"" : "", escaped(cell));
+      body_ += fmt::format("<{0}{1}>{2}</{0}>", head ? "th" : "td",
+                           !head && isNumber(cell) ? " class=\"number\"" : "", escaped(cell));
     body_ += "</tr>\n";
   }
   body_ += "</table></div>\n";

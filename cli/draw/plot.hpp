@@ -41,6 +41,16 @@ struct Plot {
   std::vector<Series> series;
 };
 
+/// A table: its header, then its rows.
+using Table = std::vector<std::vector<std::string>>;
+
+/// Returns a table as text with columns as wide as their widest cell, indented by `indent` blanks. Numeric columns are
+/// right-aligned.
+std::string tableText(const Table& table, std::size_t indent = 0);
+
+/// Returns a table as CSV.
+std::string csvText(const Table& table);
+
 /// A self-contained HTML page of headings, paragraphs, tables and charts, in the order in which they are
 /// added.
 class HtmlReport {
@@ -50,7 +60,7 @@ class HtmlReport {
   void heading(const std::string& text);
   void paragraph(const std::string& text);
   /// Adds a table, which scrolls where it is wider than the screen. Numeric cells are right-aligned.
-  void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
+  void table(const Table& table);
   /// Adds charts, which are shown side by side if the screen is wide enough. Points that cover each other are left
   /// out. @throws std::invalid_argument if x and y of a series differ in length
   void charts(const std::vector<Plot>& plots);

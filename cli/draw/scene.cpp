@@ -127,8 +127,6 @@ void addArea(Scene& scene, const std::string& name, Colour colour, const Blocks&
 
 /// Adds what a mission adds to the ground: keep-out areas, and each cost layer with its area.
 void addMissionLayers(Scene& scene, const costmap::TraversabilityMap& map, const Blocks& blocks) {
-  addArea(scene, "keep-out", rgb(0x000000), blocks,
-          [&](Cell cell) { return has(map.surface().hazards(cell), costmap::Hazard::KeepOut); });
   for (const costmap::CostLayer& layer : map.surface().costLayers()) {
     const std::size_t before = scene.areas.size();
     addArea(scene, "layer " + layer.name, seriesColour(3), blocks, [&](Cell cell) {
@@ -138,6 +136,9 @@ void addMissionLayers(Scene& scene, const costmap::TraversabilityMap& map, const
     addLayer(scene, "layer " + layer.name, blocks.mean([&](Cell cell) { return layer.added_J_per_m[cell]; }));
     scene.layers.back().unit = "J/m";
   }
+  addArea(scene, "keep-out", rgb(0x000000), blocks, [&](Cell cell) {
+    return has(map.surface().hazards(cell), costmap::Hazard::KeepOut);
+  });  // over the others
 }
 
 /// Names of the soils of the map's classes.

@@ -316,6 +316,7 @@ void addCostCurve(CLI::App& command, GroundOptions& options) {
                 "the map is a raster of costs a metre, or the YAML file of a Nav2 map, in place of heights, "
                 "rover and soil")
       ->excludes("--cost-curve");
+  groupOptions(command, "Cost and thresholds");
 }
 
 Ground readGround(const GroundOptions& options, const Context& context) {

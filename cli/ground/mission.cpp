@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numbers>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/options.hpp>
 #include <talus/cli/ground/mission.hpp>
@@ -225,39 +223,23 @@ namespace {
 
 // Keys with a value as entries; keys without a value as YAML comments.
 std::string keysText(std::span<const terramech::FileKey> keys,
-                     const std::map<std::string, std::string>& values, const std::string& indent) {
+                     const std::map<std::string, nlohmann::json>& values, const std::string& indent) {
   std::string text;
   for (const terramech::FileKey& key : keys) {
     const auto value = values.find(key.name);
-    text += value == values.end()
+    text += value == values.end() || value->second == ""
                 ? fmt::format("{}# {}:  # {}\n", indent, key.name, key.meaning)
-                : fmt::format("{}{}: {}  # {}\n", indent, key.name, value->second, key.meaning);
+                : fmt::format("{}{}: {}  # {}\n", indent, key.name, value->second.dump(), key.meaning);
   }
   return text;
 }
 
 }  // namespace
 
-std::string missionText(const MissionDraft& draft) {
-  std::map<std::string, std::string> maps, values;
-  const auto set = [](std::map<std::string, std::string>& keys, const char* key, const std::string& word) {
-    if (!word.empty()) keys[key] = nlohmann::json(word).dump();
-  };
-  set(maps, "dem", draft.dem);
-  set(maps, "terrain", draft.terrain);
-  set(maps, "rocks", draft.rocks);
-  if (draft.resolution_m > 0.0) maps["resolution_m"] = fmt::format("{:.10g}", draft.resolution_m);
-  if (draft.ignore_crs) maps["ignore_crs"] = "true";
-  for (const auto& [key, word] : {std::pair{"rover", draft.rover},
-                                  {"soil", draft.soil},
-                                  {"soils", draft.soils},
-                                  {"start", draft.start},
-                                  {"goal", draft.goal},
-                                  {"output", draft.output}})
-    set(values, key, word);
+std::string missionText(const std::map<std::string, nlohmann::json>& values) {
   std::string text =
-      "# talus plan FILE.yaml; paths are relative to this file. Take the # off what you need.\nmaps:\n";
-  text += keysText(missionMapKeys(), maps, "  ");
+      "# talus plan FILE.yaml; paths are relative to this file. Take the # off what you need.\nmaps:\n" +
+      keysText(missionMapKeys(), values, "  ");
   for (const terramech::FileKey& key : missionKeys()) {
     if (std::string(key.name) == "maps") continue;
     if (std::string(key.name) == "thresholds")

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/planner/simulation/simulation.hpp>
@@ -64,20 +67,9 @@ bool isMission(const std::string& path);
 void readMission(GroundOptions& ground);
 void readMission(PlanOptions& options);
 
-/// Values of a new mission file (input of `talus plan`); all other keys are written as comments.
-struct MissionDraft {
-  std::string dem{"dem.tif"};
-  std::string terrain{}, rocks{};  ///< layers of `dem`; empty: none
-  double resolution_m = 0.0;       ///< cell size for a map without a coordinate system; 0: not stated
-  bool ignore_crs = false;
-  std::string rover{"mer"}, soil{"mars_blocky"}, soils{};
-  std::string start{"100,100"}, goal{"900,900"};  ///< map coordinates [m]
-  std::string output{"route.geojson"};            ///< relative to the mission
-};
-
-/// Returns the text of a mission file with all keys that the reader accepts. Keys without a value in the
-/// draft are comments with their meaning.
-std::string missionText(const MissionDraft& draft);
+/// Returns the text of a mission file with all keys that the reader accepts. Keys of the file and of its mapping `maps`
+/// have the values given here; the others, and those with an empty text, are comments with their meaning.
+std::string missionText(const std::map<std::string, nlohmann::json>& values);
 
 /// Description of the format of TRUTH.yaml (true soils of a simulation) for the help.
 extern const char* const kTruthFormat;

@@ -97,7 +97,8 @@ void addPluginOption(CLI::App& command, std::string& plugin) {
 
 void addImageOption(CLI::App& command, std::string& image) {
   addOption(command, "--image ORTHO.tif", image,
-            "picture of the ground, such as an orthophoto, to show under the route");
+            "picture of the ground, such as an orthophoto, to show under the route")
+      ->check(CLI::ExistingFile);
 }
 
 void addPluginTime(CLI::App& command, double& time_limit_s) {

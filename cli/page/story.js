@@ -47,7 +47,7 @@ function showStory(map, story) {
     showCells(now.time);
     const latest = past.slice(-4).map(event => `${event.time.toFixed(0)} s ${event.text}`).join(" · ");
     status.textContent = `${now.time.toFixed(0)} s · slip ${now.slip.toFixed(2)} · sinkage ${(1000 * now.sinkage).toFixed(0)} mm · ` +
-      `${now.energy.toFixed(2)} kJ · ${drawn.length} reclassifications\n${latest}`;
+      `${now.energy.toFixed(2)} kJ · ${drawn.length} changes of category\n${latest}`;
   }
 
   let timer = 0;

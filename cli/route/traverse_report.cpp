@@ -220,12 +220,16 @@ void saveTelemetry(const std::filesystem::path& path, const planner::TraverseSim
 
 namespace {
 
-// Elevation, slip and energy over the steps of a drive; the energy is summed over the length on the slope.
+// Elevation, slip and energy over the steps of a drive. The energy includes reversing and turning; that of the
+// prediction has the predicted energy of each forward step in place of the true one.
 planner::Route profileOf(const RecordedTraverse& drive, const costmap::TraversabilityMap& map,
                          bool predicted) {
   planner::Route route;
-  double energy_J = 0.0;
+  const auto& track = drive.result.drive.track;
+  double error_J = 0.0;
   for (const planner::TraverseStep& step : drive.log.steps()) {
+    const auto next = std::ranges::upper_bound(track, step.time_s, {}, &planner::TrackPoint::time_s);
+    const double driven_J = next == track.begin() ? 0.0 : std::prev(next)->energy_J;
     planner::RouteVertex v{
         .x_m = step.place.x_m,
         .y_m = step.place.y_m,
@@ -233,13 +237,13 @@ planner::Route profileOf(const RecordedTraverse& drive, const costmap::Traversab
         .slope_across_rad = std::nan(""),
         .slip = predicted ? step.expected_slip : step.truth.slip,
         .category = static_cast<terramech::Category>(map.costs().category(*map.grid().cellAt(step.place))),
-        .energy_J = energy_J,
+        .energy_J = driven_J + (predicted ? error_J : 0.0),
         .time_s = step.time_s,
         .immobilisation_risk = std::nan("")};
     if (!predicted)
       v.elevation_m = maps::elevationAt(map.elevation().elevation_m, step.place).value_or(std::nan(""));
-    energy_J += (predicted ? step.expected_energy_J_per_m : step.truth.energy_J_per_m) * step.length_m *
-                std::hypot(1.0, step.gradient);
+    error_J += (step.expected_energy_J_per_m - step.truth.energy_J_per_m) * step.length_m *
+               std::hypot(1.0, step.gradient);
     route.vertices.push_back(v);
   }
   return route;

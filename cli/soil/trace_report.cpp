@@ -50,6 +50,8 @@ Plot overSlip(terramech::Channel channel, const terramech::Trial& trial,
   return plot;
 }
 
+namespace {
+
 nlohmann::ordered_json searchedJson(const terramech::TraceResult& r) {
   return {{"rows", r.trial.rows()},
           {"rows_not_searched", r.unsearched.rows},
@@ -76,9 +78,21 @@ std::string searchedText(const terramech::TraceResult& result) {
   return text;
 }
 
-namespace {
-
 using namespace terramech;
+
+/// Named errors by channel as a table, whose first column is `what`; channels without a first error are omitted.
+Table errorTable(const std::string& what,
+                 const std::vector<std::pair<std::string, const ChannelErrors&>>& errors) {
+  Table table{{what}};
+  for (const auto& [title, of] : errors) table.front().push_back(title);
+  for (Channel c : kAllChannels) {
+    const auto k = static_cast<std::size_t>(c);
+    if (!std::isfinite(errors.front().second[k])) continue;
+    table.push_back({name(c)});
+    for (const auto& [title, of] : errors) table.back().push_back(fmt::format("{:.4f}", of[k]));
+  }
+  return table;
+}
 
 /// Channels in which the refined model has larger errors than the base.
 nlohmann::ordered_json worse(const LeftOutErrors& part) {
@@ -93,17 +107,14 @@ nlohmann::ordered_json worse(const LeftOutErrors& part) {
 std::string leftOutText(const std::vector<LeftOutErrors>& all) {
   std::string out;
   for (const LeftOutErrors& part : all) {
-    out += fmt::format("traced without {} ({} rows): {}\n  {:26s} {:>10s} {:>10s} {:>12s} {:>12s}\n",
-                       part.what, part.rows,
-                       part.effects.empty() ? "no effect" : fmt::format("{}", fmt::join(part.effects, ", ")),
-                       "rmse", "base", "refined", "noise floor", "regression");
-    for (Channel c : kAllChannels) {
-      const auto k = static_cast<std::size_t>(c);
-      if (!std::isfinite(part.base[k])) continue;
-      out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f} {:12.4f}{}\n", name(c), part.base[k],
-                         part.refined[k], part.floor[k], part.regression[k],
-                         part.refined[k] > part.base[k] ? "  refined is worse than base" : "");
-    }
+    out += fmt::format("traced without {} ({} rows): {}\n", part.what, part.rows,
+                       part.effects.empty() ? "no effect" : fmt::format("{}", fmt::join(part.effects, ", ")));
+    out += tableText(errorTable("rmse", {{"base", part.base},
+                                         {"refined", part.refined},
+                                         {"noise floor", part.floor},
+                                         {"regression", part.regression}}),
+                     2);
+    for (const std::string channel : worse(part)) out += "  " + channel + ": refined is worse than base\n";
   }
   return out;
 }
@@ -130,43 +141,38 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
 }
 
-std::string headerOf(const ProposedRun& run, const TraceResult& result) {
-  std::string header = "run,slip";
-  for (const auto& [column, value] : run.columns) header += ',' + csvField(column);
-  for (const auto& [column, text] : run.groups) header += ',' + csvField(column);
-  for (const Channel c : kAllChannels)
-    if (result.trial.has(c)) header += std::string(",") + kAnswers[static_cast<std::size_t>(c)];
-  for (std::size_t k = 1; k <= run.predictions.size(); ++k) {
-    header += fmt::format(",predicted_{}_cause", k);
-    for (const Channel c : kAllChannels)
-      if (result.trial.has(c))
-        header +=
-            fmt::format(",predicted_{0}_{1},predicted_{0}_{1}_std", k, kAnswers[static_cast<std::size_t>(c)]);
-  }
-  return header + '\n';
-}
-
 }  // namespace
 
 std::string proposalTable(const std::vector<ProposedRun>& runs, const TraceResult& result) {
   if (runs.empty()) return "";
-  std::string text = headerOf(runs.front(), result);
+  Table table(1);
+  std::vector<std::pair<std::string, std::string>> row;  // column, value
+  const auto eachChannel = [&](auto add) {
+    for (const Channel c : kAllChannels)
+      if (result.trial.has(c)) add(static_cast<std::size_t>(c), kAnswers[static_cast<std::size_t>(c)]);
+  };
   for (std::size_t k = 0; k < runs.size(); ++k)
-    for (std::size_t row = 0; row < runs[k].slip.size(); ++row) {
-      text += fmt::format("proposed {},{}", k + 1, number(runs[k].slip[row]));
-      for (const auto& [column, value] : runs[k].columns) text += ',' + number(value);
-      for (const auto& [column, word] : runs[k].groups) text += ',' + csvField(word);
-      for (const Channel c : kAllChannels)
-        if (result.trial.has(c)) text += ',';
-      for (const RunPrediction& p : runs[k].row_predictions[row]) {
-        text += ',' + csvField(p.cause);
-        for (const Channel c : kAllChannels)
-          if (const auto at = static_cast<std::size_t>(c); result.trial.has(c))
-            text += ',' + number(p.mean[at]) + ',' + number(p.std[at]);
+    for (std::size_t at = 0; at < runs[k].slip.size(); ++at) {
+      row = {{"run", fmt::format("proposed {}", k + 1)}, {"slip", number(runs[k].slip[at])}};
+      for (const auto& [column, value] : runs[k].columns) row.emplace_back(column, number(value));
+      row.insert(row.end(), runs[k].groups.begin(), runs[k].groups.end());
+      eachChannel([&](std::size_t, const char* answer) { row.emplace_back(answer, ""); });
+      for (std::size_t i = 0; const RunPrediction& p : runs[k].row_predictions[at]) {
+        const std::string cause = fmt::format("predicted_{}_", ++i);
+        row.emplace_back(cause + "cause", p.cause);
+        eachChannel([&](std::size_t c, const char* answer) {
+          row.emplace_back(cause + answer, number(p.mean[c]));
+          row.emplace_back(cause + answer + "_std", number(p.std[c]));
+        });
       }
-      text += '\n';
+      const bool first = table.front().empty();
+      table.emplace_back();
+      for (const auto& [column, value] : row) {
+        if (first) table.front().push_back(column);
+        table.back().push_back(value);
+      }
     }
-  return text;
+  return csvText(table);
 }
 
 ordered_json proposalsJson(const std::vector<ProposedRun>& runs) {
@@ -327,6 +333,14 @@ double correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
   return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
 }
 
+std::string equalText(const TracedEffect& effect) {
+  std::string causes;
+  for (const Explanation& e : effect.equal)
+    causes += fmt::format("{}{} ({})", causes.empty() ? "" : " or ", e.candidate.parts.front().name,
+                          e.candidate.covariate());
+  return "these rows cannot separate it from " + causes;
+}
+
 std::string effectLine(const Trial& trial, const TracedEffect& effect, const EffectRole& role) {
   const Effect& part = effect.chosen.candidate.parts.front();
   std::string line =
@@ -354,12 +368,6 @@ std::string effectLine(const Trial& trial, const TracedEffect& effect, const Eff
 
 }  // namespace
 
-std::string pText(double p) {
-  const double least = 1.0 / (TraceOptions{}.draws + 1.0);
-  if (p <= least * (1.0 + 1e-9)) return fmt::format("< {:.2g}", std::max(0.001, 1.01 * least));
-  return fmt::format("= {:.2g}", p);
-}
-
 std::vector<FittedNumber> fittedNumbers(const TracedEffect& effect) {
   const Effect& part = effect.chosen.candidate.parts.front();
   const EffectForm* form = findEffect(part.name);
@@ -378,12 +386,10 @@ std::vector<FittedNumber> fittedNumbers(const TracedEffect& effect) {
   return numbers;
 }
 
-std::string equalText(const TracedEffect& effect) {
-  std::string causes;
-  for (const Explanation& e : effect.equal)
-    causes += fmt::format("{}{} ({})", causes.empty() ? "" : " or ", e.candidate.parts.front().name,
-                          e.candidate.covariate());
-  return "these rows cannot separate it from " + causes;
+std::string pText(double p) {
+  const double least = 1.0 / (TraceOptions{}.draws + 1.0);
+  if (p <= least * (1.0 + 1e-9)) return fmt::format("< {:.2g}", std::max(0.001, 1.01 * least));
+  return fmt::format("= {:.2g}", p);
 }
 
 const std::string& covariateOf(const Effect& effect) {
@@ -442,6 +448,12 @@ ordered_json heldOutJson(const TableTrace& trace) {
                     {"refined_rmse", errorsJson(end.refined_rmse)}});
   out["end_levels"] = ends;
   return out;
+}
+
+/// Errors of base and refined model beside the noise floor.
+Table heldOutTable(const std::string& what, const HeldOut& held, const TraceResult& result) {
+  return errorTable(
+      what, {{"base", held.base_rmse}, {"refined", held.refined_rmse}, {"noise floor", result.noise_floor}});
 }
 
 /// Errors at the end levels, predicted from the other levels.
@@ -532,12 +544,16 @@ std::string beyondAxleText(const TableTrace& trace) {
       trace.beyond_axle, errors);
 }
 
+namespace {
+
 std::string movedText(const MovedParameter& p) {
   return fmt::format(
       "warning: {} of the soil is fitted {:.1f} standard deviations from its prior ({:.4g}, prior {:.4g} +- "
       "{:.2g})",
       p.name, p.away(), p.value, p.prior, p.prior_std);
 }
+
+}  // namespace
 
 std::string traceText(const TableTrace& trace) {
   const TraceResult& r = trace.result;
@@ -553,18 +569,8 @@ std::string traceText(const TableTrace& trace) {
     out += "warning: " + name + " (soil) is at the bound of its range\n";
   const std::vector<EffectRole> roles = rolesOf(r);
   for (std::size_t k = 0; k < roles.size(); ++k) out += effectLine(r.trial, r.effects[k], roles[k]);
-  for (const HeldOut& held : trace.held_out) {
-    out += fmt::format(
-        "held out: {}\n"
-        "  {:26s} {:>10s} {:>10s} {:>12s}\n",
-        held.scheme, "rmse", "base", "refined", "noise floor");
-    for (Channel c : kAllChannels) {
-      const auto k = static_cast<std::size_t>(c);
-      if (!r.trial.has(c)) continue;
-      out += fmt::format("  {:26s} {:10.4f} {:10.4f} {:12.4f}\n", name(c), held.base_rmse[k],
-                         held.refined_rmse[k], r.noise_floor[k]);
-    }
-  }
+  for (const HeldOut& held : trace.held_out)
+    out += fmt::format("held out: {}\n{}", held.scheme, tableText(heldOutTable("rmse", held, r), 2));
   out += endLines(r);
   if (trace.beyond_axle > 0) out += beyondAxleText(trace) + '\n';
   return out;
@@ -628,7 +634,9 @@ void effects(HtmlReport& page, const TableTrace& trace) {
     page.paragraph("No effect found: no candidate gains more than noise would.");
     return;
   }
-  std::vector<std::vector<std::string>> found, forms;
+  Table found{{"effect", "covariate", "channel", "parameters (standard deviation)", "p (all tests)",
+               "log-likelihood gain"}},
+      forms{{"effect", "form", "equal causes", "how to discriminate"}};
   const std::vector<EffectRole> roles = rolesOf(trace.result);
   for (std::size_t k = 0; k < roles.size(); ++k) {
     const TracedEffect& e = trace.result.effects[k];
@@ -643,27 +651,16 @@ void effects(HtmlReport& page, const TableTrace& trace) {
                          (role.empty() ? "" : "; it " + role),
                      e.equal.empty() ? "" : equalText(e), separatingMeasurement(trace.result.trial, e)});
   }
-  page.table({"effect", "covariate", "channel", "parameters (standard deviation)", "p (all tests)",
-              "log-likelihood gain"},
-             found);
-  page.table({"effect", "form", "equal causes", "how to discriminate"}, forms);
+  page.table(found);
+  page.table(forms);
 }
 
 // Errors on the rows of the fit and on those held out, in a table each.
 void errors(HtmlReport& page, const TableTrace& trace) {
   const TraceResult& r = trace.result;
-  const auto add = [&](const std::string& what, const ChannelErrors& base, const ChannelErrors& refined) {
-    std::vector<std::vector<std::string>> rows;
-    for (Channel c : kAllChannels)
-      if (const auto k = static_cast<std::size_t>(c); r.trial.has(c))
-        rows.push_back({name(c), fmt::format("{:.4f}", base[k]), fmt::format("{:.4f}", refined[k]),
-                        fmt::format("{:.4f}", r.noise_floor[k])});
-    page.table({what, "base", "refined", "noise floor"}, rows);
-  };
   page.paragraph("Root mean square errors. The noise floor is the error from sensor noise alone.");
-  add("rows of the fit", r.base_rmse, r.refined_rmse);
-  for (const HeldOut& held : trace.held_out)
-    add("held out: " + held.scheme, held.base_rmse, held.refined_rmse);
+  page.table(heldOutTable("rows of the fit", {"", r.base_rmse, r.refined_rmse}, r));
+  for (const HeldOut& held : trace.held_out) page.table(heldOutTable("held out: " + held.scheme, held, r));
 }
 
 void tests(HtmlReport& page, const TraceResult& r) {
@@ -672,14 +669,14 @@ void tests(HtmlReport& page, const TraceResult& r) {
       "The strongest of {} candidates, each to first order: log-likelihood gained on held-out rows. p: "
       "probability that the largest gain in a table of the base model's noise is at least that large.",
       r.first_promises.size()));
-  std::vector<std::vector<std::string>> rows;
+  Table rows{{"candidate", "column", "channel", "gain", "p"}};
   for (std::size_t k = 0; k < r.first_promises.size() && k < 15; ++k) {
     const Promise& p = r.first_promises[k];
     const Effect& front = p.candidate.parts.front();
     rows.push_back({front.name, p.candidate.covariate(), name(front.channel), fmt::format("{:.1f}", p.gain),
                     pText(p.p_value)});
   }
-  page.table({"candidate", "column", "channel", "gain", "p"}, rows);
+  page.table(rows);
 }
 
 }  // namespace

@@ -32,13 +32,6 @@ using NamedPredictions = std::pair<std::string, Eigen::MatrixXd>;
 Plot overSlip(terramech::Channel channel, const terramech::Trial& trial,
               const std::vector<NamedPredictions>& predictions);
 
-/// Returns the rows and columns of a large table that were not searched, one line each; empty if all were
-/// searched.
-std::string searchedText(const terramech::TraceResult& result);
-
-/// Returns JSON: {rows, rows_not_searched, base_rmse_there, refined_rmse_there, columns_dropped}.
-nlohmann::ordered_json searchedJson(const terramech::TraceResult& result);
-
 /// Returns the prediction errors on held-out rows as a table: base model, refined model, sensors alone and
 /// plain regression.
 std::string leftOutText(const std::vector<terramech::LeftOutErrors>& all);
@@ -82,19 +75,12 @@ std::vector<FittedNumber> fittedNumbers(const terramech::TracedEffect& effect);
 /// tables.
 std::string pText(double p);
 
-/// Returns one line of text about the other causes that the rows cannot separate from an effect; requires at
-/// least one such cause.
-std::string equalText(const terramech::TracedEffect& effect);
-
 /// Returns the measurement that would discriminate between an effect and its closest alternative.
 std::string separatingMeasurement(const terramech::Trial& trial, const terramech::TracedEffect& effect);
 
 /// Returns one line of text about rows that were left out because the wheel is sunk to its axle; requires at
 /// least one such row.
 std::string beyondAxleText(const terramech::TableTrace& trace);
-
-/// Returns one line of text about a soil parameter far from its prior.
-std::string movedText(const terramech::MovedParameter& parameter);
 
 /// Return the whole analysis of a table as JSON, as text, and as an HTML page.
 nlohmann::ordered_json traceJson(const terramech::TableTrace& trace);

@@ -257,8 +257,8 @@ const LineColumn kColumns[] = {
     {"clearance", "least_clearance_cells", &BenchmarkLine::least_clearance_cells, "{:.2f}"}};
 
 // Table rows, beginning with the header.
-std::vector<std::vector<std::string>> lineRows(const std::vector<BenchmarkLine>& lines) {
-  std::vector<std::vector<std::string>> rows{{"planner"}};
+Table lineRows(const std::vector<BenchmarkLine>& lines) {
+  Table rows{{"planner"}};
   for (const LineColumn& column : kColumns) rows.front().emplace_back(column.title);
   for (const BenchmarkLine& line : lines) {
     rows.push_back({line.planner});
@@ -272,18 +272,6 @@ std::vector<std::vector<std::string>> lineRows(const std::vector<BenchmarkLine>&
         rows.back().emplace_back("-");
   }
   return rows;
-}
-
-// A table for a terminal, whose first `names` columns are names.
-std::string tableText(const std::vector<std::vector<std::string>>& rows, std::size_t names, int width) {
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i)
-      text += i < names ? fmt::format("{:<{}}", row[i], i + 1 < names ? 12 : 16)
-                        : fmt::format("{:>{}}", row[i], width);
-    text += "\n";
-  }
-  return text;
 }
 
 // Colour of a planner, which its start with nothing (:cold) shares.
@@ -368,9 +356,8 @@ std::vector<std::string> groupsOf(const BenchmarkPlan& plan) {
 }
 
 // Table rows, beginning with the header.
-std::vector<std::vector<std::string>> worldRows(const std::vector<WorldLine>& lines) {
-  std::vector<std::vector<std::string>> rows{
-      {"belief", "planner", "runs", "success %", "95 %", "time p50 s", "slip max p50"}};
+Table worldRows(const std::vector<WorldLine>& lines) {
+  Table rows{{"belief", "planner", "runs", "success %", "95 %", "time p50 s", "slip max p50"}};
   for (const WorldLine& line : lines) {
     const auto rate =
         planner::share(static_cast<std::size_t>(line.reached), static_cast<std::size_t>(line.runs));
@@ -412,11 +399,11 @@ std::vector<WorldLine> drivesOf(const BenchmarkPlan& plan, const std::vector<Ben
 }
 
 std::string asText(const std::vector<WorldLine>& lines) {
-  return lines.empty() ? "" : "\n" + tableText(worldRows(lines), 2, 14);
+  return lines.empty() ? "" : "\n" + tableText(worldRows(lines));
 }
 
 std::string asText(const std::vector<BenchmarkLine>& lines) {
-  return tableText(lineRows(lines), 1, 12);
+  return tableText(lineRows(lines));
 }
 
 nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives) {
@@ -453,11 +440,10 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
   plots.insert(plots.begin(), dearAndFast(plan, lines));
   const auto first = plots.begin() + std::min<std::ptrdiff_t>(3, std::ssize(plots));  // one row of a screen
   page.charts({plots.begin(), first});
-  const auto rows = lineRows(lines);
-  page.table(rows.front(), {rows.begin() + 1, rows.end()});
+  page.table(lineRows(lines));
   if (const auto drives = worldRows(drivesOf(plan, runs)); drives.size() > 1) {
     page.heading("Simulated drives over the true slip");
-    page.table(drives.front(), {drives.begin() + 1, drives.end()});
+    page.table(drives);
   }
   page.charts({first, plots.end()});
   page.paragraph(fmt::format(

@@ -208,9 +208,9 @@ Score Planner::score(const costmap::TraversabilityMap& map, const std::vector<ma
   request.chassis = nullptr;
   std::optional<Route> best;
   if (request.prove) best = this->plan(costs, request);
-  const double bound_J =
-      best ? best->lower_bound
-           : planner::LowerBound()(costs, {request.start, request.goal}, 0.0, request.watch);
+  const double bound_J = best ? best->lower_bound
+                              : planner::straightBoundOver_J(*costs, {request.start, request.goal}, 0.0,
+                                                             plan.cost_J, request.watch);
   plan.lower_bound_J = std::min(plan.cost_J, bound_J);
   planner::AnnotationInput none{.map = *costs};
   none.planner = "none";

@@ -123,7 +123,7 @@ TEST(BadInput, InvalidSitesAndPluginsAreRejectedWithOneLine) {
       {
           {{"generate"}, 2, "KIND"},
           {{"generate", "craters"}, 2, "--output is required"},
-          {{"generate", "crater", "-o", "s.tif"}, 2, "did you mean 'craters'?"},
+          {{"generate", "crater", "-o", "s.tif"}, 2, "crater not in {craters,dunes,rocks}"},
           {{"generate", "lake", "-o", "s.tif"}, 2, "choose craters, dunes or rocks"},
           {{"generate", "key.yaml", "-o", "s.tif"}, 2, "widht"},
           {{"generate", "seed.yaml", "-o", "s.tif"}, 2, "seed = -1"},

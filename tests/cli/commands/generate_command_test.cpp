@@ -47,15 +47,5 @@ TEST(GenerateCommand, GeneratedRocksAreNotTreatedAsLostData) {
   }
 }
 
-TEST(GenerateCommand, ShippedDescriptionsAreComplete) {
-  const Folder folder;
-  for (const char* name : {"moon_craters", "mars_dunes", "mars_rocks"}) {
-    const Ran ran = runTalus({"generate", std::string(TALUS_SOURCE_DIR "/maps/sites/") + name + ".yaml",
-                              "--size", "64", "-o", folder / "s.tif", "--json"});
-    ASSERT_EQ(ran.code, 0) << ran.err;
-    EXPECT_EQ(nlohmann::json::parse(ran.out)["width"], 64);
-  }
-}
-
 }  // namespace generate_command_test
 }  // namespace talus::cli

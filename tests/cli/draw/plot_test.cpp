@@ -66,7 +66,7 @@ using testing::Not;
 
 TEST(HtmlReport, TextIsEscapedAndFiguresEmbedded) {
   HtmlReport report("a < b");
-  report.table({"name", "value"}, {{"x & y", "1.5"}});
+  report.table({{"name", "value"}, {"x & y", "1.5"}});
   report.charts({{.title = "Pull", .x = {}, .y = {}, .series = {{.x = {0.0, 1.0}, .y = {0.0, 1.0}}}}});
   EXPECT_THAT(report.html(), HasSubstr("<h1>a &lt; b</h1>"));
   EXPECT_THAT(report.html(), HasSubstr("<td>x &amp; y</td><td class=\"number\">1.5</td>"));
@@ -79,7 +79,7 @@ TEST(HtmlReport, UserTextIsNeverMarkup) {
   HtmlReport report(hostile);
   report.heading(hostile);
   report.paragraph(hostile);
-  report.table({hostile}, {{hostile}});
+  report.table({{hostile}, {hostile}});
   report.charts(
       {{.title = hostile, .x = {hostile}, .y = {}, .series = {{.name = hostile, .x = {}, .y = {}}}}});
   EXPECT_THAT(report.html(), Not(HasSubstr("<script>alert")));
