@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <fstream>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -138,16 +138,39 @@ fs::path journalBehind(const fs::path& path) {
   return {};
 }
 
-// Ending of a file name, behind its last dot a letter and further letters or digits, by its usual spelling; empty
-// without one.
-std::string endingOf(const fs::path& name) {
-  constexpr std::array kUsual{std::pair{".tiff", ".tif"}, std::pair{".htm", ".html"},
-                              std::pair{".json", ".geojson"}, std::pair{".yml", ".yaml"}};
-  static const std::regex kEnding(R"(\.[a-z][a-z0-9]*)");
-  const std::string ending = maps::lower(name.extension().string());
-  const auto* other = std::ranges::find(kUsual, ending, &std::pair<const char*, const char*>::first);
-  if (other != kUsual.end()) return other->second;
-  return std::regex_match(ending, kEnding) ? ending : "";
+// File name endings of the formats that Talus writes; endings in one row denote the same format.
+using Names = std::vector<std::string_view>;
+const std::array<Names, 14> kFormats{{{".tif", ".tiff"},
+                                      {".asc"},
+                                      {".png"},
+                                      {".jpg", ".jpeg"},
+                                      {".svg"},
+                                      {".html", ".htm"},
+                                      {".geojson", ".json"},
+                                      {".gpkg"},
+                                      {".gpx"},
+                                      {".kml"},
+                                      {".csv"},
+                                      {".yaml", ".yml"},
+                                      {".ot"},
+                                      {".bt"}}};
+
+// Endings of formats that Talus never writes.
+const Names kForeign{".db",   ".sqlite", ".sqlite3", ".shp", ".kmz", ".xml", ".vrt",     ".img", ".lbl",
+                     ".nc",   ".h5",     ".hdf5",    ".mat", ".npy", ".npz", ".parquet", ".las", ".laz",
+                     ".ply",  ".pcd",    ".obj",     ".stl", ".bag", ".pdf", ".ps",      ".eps", ".gif",
+                     ".bmp",  ".webp",   ".pgm",     ".ppm", ".pnm", ".jp2", ".zip",     ".gz",  ".tgz",
+                     ".bz2",  ".xz",     ".zst",     ".7z",  ".tar", ".xls", ".xlsx",    ".ods", ".doc",
+                     ".docx", ".odt",    ".tex",     ".md",  ".c",   ".h",   ".cpp",     ".hpp", ".py",
+                     ".js",   ".so",     ".a",       ".o",   ".exe", ".deb"};
+
+const Names* formatOf(const std::string& name) {
+  std::string extension = fs::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  for (const Names& names : kFormats)
+    if (std::find(names.begin(), names.end(), extension) != names.end()) return &names;
+  return std::find(kForeign.begin(), kForeign.end(), extension) != kForeign.end() ? &kForeign : nullptr;
 }
 
 bool leavesItsFolder(const fs::path& link) {
@@ -195,15 +218,19 @@ void checkBesideJournal(const fs::path& path, const fs::path& journal) {
 
 // Readers of the file would take the format from the name, for example of a GeoTIFF named .asc.
 void checkFormat(const fs::path& path, const std::string& written) {
-  const std::string named = endingOf(path);
+  const Names* named = formatOf(path.string());
+  if (named == nullptr) return;
   std::vector<std::string> endings;
   std::istringstream choices(written);
-  for (std::string choice; std::getline(choices, choice, '|');) endings.push_back(endingOf(choice));
-  std::erase(endings, "");
-  if (named.empty() || endings.empty() || std::ranges::find(endings, named) != endings.end()) return;
-  // Removes all endings: OUT.geojson.gz becomes OUT.
+  for (std::string choice; std::getline(choices, choice, '|');) {
+    const Names* format = formatOf(choice);
+    if (format == named) return;
+    if (format != nullptr) endings.emplace_back(format->front());
+  }
+  if (endings.empty()) return;
+  // Removes all known endings: OUT.geojson.gz becomes OUT.
   fs::path stem = path.stem();
-  while (!endingOf(stem).empty()) stem = stem.stem();
+  while (formatOf(stem.string()) != nullptr) stem = stem.stem();
   throw InputError({path.string(),
                     fmt::format("is named {}, but a {} file is written", path.extension().string(),
                                 fmt::join(endings, " or ")),

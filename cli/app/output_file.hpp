@@ -43,8 +43,9 @@ void checkOutput(const std::filesystem::path& path, const std::vector<std::strin
 /// would destroy data that it reads or writes.
 void checkBesideJournal(const std::filesystem::path& path, const std::filesystem::path& journal);
 
-/// Throws InputError if a file name has another ending than the written format. `written` is a file name, or several
-/// separated by | ("ROUTE.geojson|FILE.csv"). A name without an ending (a dot, a letter, letters and digits) is accepted.
+/// Throws InputError if the ending of a file name denotes another known format than the written one.
+/// `written` is a file name, or several separated by | ("ROUTE.geojson|FILE.csv"). A name with no ending or
+/// an unknown ending is accepted.
 void checkFormat(const std::filesystem::path& path, const std::string& written);
 
 /// Checks every output file of a parsed call before the work begins: whether the file can be written and,
