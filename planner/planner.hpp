@@ -181,9 +181,8 @@ class Planner {
   /// constraints only via points are supported.
   Route plan(planner::WindowedMap& map, const PlanRequest& request);
 
-  /// Returns what a polyline of at least one point costs on a map under the cost function of the planners. Of the
-  /// request, `chassis` (checked, too), `prove` (also plans between the ends) and `watch` are used. Without `prove` the
-  /// lower bound is that of the lowest cost per metre (planner::straightBoundOver_J).
+  /// Returns what a polyline of at least one point costs under the cost function of the planners. Of the request,
+  /// `chassis`, `prove` (plans between the ends; without it the bound is straightBoundOver_J()) and `watch` are used.
   Score score(const costmap::TraversabilityMap& map, const std::vector<maps::Point>& path,
               PlanRequest request = {});
 

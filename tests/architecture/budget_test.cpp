@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 700},    {"terramech", 19724}, {"maps", 6710},     {"costmap", 11714},
-                           {"planner", 22422}, {"cli", 13592},       {"examples", 1538}, {"tests", 56198}};
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 19723}, {"maps", 6710},     {"costmap", 11714},
+                           {"planner", 22422}, {"cli", 13497},       {"examples", 1538}, {"tests", 56172}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;
