@@ -214,12 +214,12 @@ Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline
   Plan plan = failedPlan(RouteStatus::Found, {});
   plan.points = refined(problem, stage, std::move(rough), stop);
   plan.cost_J = cost.along(plan.points);
-  const Segment ends{stage.from, stage.to};
-  const auto proven_J = [&] {
+  if (problem.prove) {
     const AddedTime proof(plan.proof_s);
-    return bound_(problem.map, ends, stage.tolerance_m, stop, plan.cost_J, problem.gap);
-  };
-  plan.lower_bound_J = std::min(plan.cost_J, problem.prove ? proven_J() : 0.0);
+    field_.reset(), edges_.reset();  // memory for the proof, which takes longer than to compute both again
+    plan.lower_bound_J = std::min(plan.cost_J, bound_(problem.map, {stage.from, stage.to}, stage.tolerance_m,
+                                                      stop, plan.cost_J, problem.gap));
+  }
   return plan;
 }
 
