@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 700},    {"terramech", 19723}, {"maps", 6710},     {"costmap", 11714},
-                           {"planner", 22422}, {"cli", 13497},       {"examples", 1538}, {"tests", 56172}};
+                           {"planner", 22422}, {"cli", 13497},       {"examples", 1538}, {"tests", 56174}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

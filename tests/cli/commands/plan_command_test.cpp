@@ -26,7 +26,7 @@ std::string dem() {
 TEST(PlanCommand, AreasAndGapAreAsStated) {
   const Folder folder;
   folder.write("dem.asc", dem());
-  folder.write("far.csv", "x_m,y_m\n5.5,4.5\n5.5,18.5\n26.5,4.5\n");
+  folder.write("far.csv", "x_m,y_m\n5.5,4.5\n12.5,17.5\n18.5,17.5\n26.5,4.5\n");
   const auto run = [&folder](std::vector<std::string> words, const std::vector<std::string>& more) {
     words.insert(words.end(),
                  {"dem.asc", "--resolution", "1", "--soil", "sandy_loam", "--rover", "fido", "--json"});
@@ -51,6 +51,8 @@ TEST(PlanCommand, AreasAndGapAreAsStated) {
   const json scored = run({"score", "--prove"}, {"--path", "far.csv"});
   EXPECT_EQ(scored["best_cost"], best["cost"]);
   EXPECT_GE(scored["lower_bound"].get<double>(), 0.9 * best["lower_bound"].get<double>());
+  EXPECT_GT(scored["cost"], best["cost"]);
+  EXPECT_LE(run({"score"}, {"--path", "far.csv"})["lower_bound"], best["cost"]);
 }
 
 // All outputs of a feasible plan are tested in one run, because the start of the program dominates the time.
