@@ -45,7 +45,7 @@ int run(const PluginsOptions& options, Context& context) {
     return Exit::kDone;
   }
   print(fmt::format("{} {}, planner interface {}\n", offers.name, offers.version, offers.interface_version));
-  print(fmt::format("planners: {}\n", fmt::join(offers.planners, ", ")));
+  if (!offers.planners.empty()) print(fmt::format("planners: {}\n", fmt::join(offers.planners, ", ")));
   if (const auto words = features(offers); !words.empty())
     print(fmt::format("features: {}\n", fmt::join(words, ", ")));
   return Exit::kDone;

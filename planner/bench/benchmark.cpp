@@ -40,7 +40,7 @@ double lengthOf(const std::vector<maps::Point>& points) {
 }
 
 bool breached(const BenchmarkCase& asked, const Plan& found) {
-  return (!found.points.empty() && !violations(*asked.map, found.points).empty()) ||
+  return found.refused || (!found.points.empty() && !violations(*asked.map, found.points).empty()) ||
          (!found.drive.legs.empty() &&
           !violations(*asked.map, found.drive, asked.kinematics.turning_radius_m).empty());
 }

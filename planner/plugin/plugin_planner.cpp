@@ -401,9 +401,12 @@ Plan PluginPlanner::plan(const Problem& problem) const {
   const std::string against = heldAgainst(problem, plan.points);
   if (problem.watch.stopped())
     return failedPlan(RouteStatus::Cancelled, "cancelled before the route was checked");
-  if (!against.empty())
-    return failedPlan(RouteStatus::NoneFound,
-                      "no route: the check refuses that of " + name_ + ": " + against);
+  if (!against.empty()) {
+    plan =
+        failedPlan(RouteStatus::NoneFound, "no route: the check refuses that of " + name_ + ": " + against);
+    plan.refused = true;
+    return plan;
+  }
   plan.goal = static_cast<std::size_t>(goalOf(problem, plan.points.back()));
   plan.cost_J = MotionCost(problem.map).along(plan.points);
   const Segment ends{plan.points.front(), plan.points.back()};

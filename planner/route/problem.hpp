@@ -140,6 +140,7 @@ struct Plan {
   double proof_s = 0.0;        ///< time used for Problem::prove
   std::size_t goal = 0;        ///< index of the reached goal: 0 is Problem::goal, k > 0 is other_goals[k - 1]
   bool interrupted = false;    ///< true: a stop was requested; route and bound are the best found until then
+  bool refused = false;        ///< true: the planner gave a route, which the route check refuses
   std::optional<Obstruction> obstruction{};  ///< reason of NoRoute, if two required points are not connected
   /// Drive with arcs and turns in place, of which `points` are the chords; no legs for a polyline.
   PosePath drive{};

@@ -124,12 +124,15 @@ TEST_F(PluginRoutes, UnusablePluginsAreRejectedWithOneLine) {
 }
 
 TEST_F(PluginRoutes, PluginPlannersCanBeBenchmarkedAndDriven) {
-  const Ran bench = runTalus(
-      {"bench", "wall.asc", "--quiet", "--ignore-crs", "--resolution", "1", "--soil", "sandy_loam", "--rover",
-       "fido", "--planners", "field", "--plugin", TALUS_STRAIGHT_PLUGIN, "--runs", "1", "--pairs", "2"},
-      folder_.path());
-  EXPECT_EQ(bench.code, 0) << bench.err;
-  EXPECT_THAT(bench.out, HasSubstr("line of straight"));
+  const Ran bench = runTalus({"bench", "wall.asc", "--quiet", "--ignore-crs", "--resolution", "1", "--soil",
+                              "sandy_loam", "--rover", "fido", "--planners", "field", "--plugin",
+                              TALUS_STRAIGHT_PLUGIN, "--runs", "1", "--pairs", "4", "--json"},
+                             folder_.path());
+  ASSERT_EQ(bench.code, 0) << bench.err;
+  const json line = json::parse(bench.out)[1];
+  EXPECT_EQ(line["planner"], "line of straight");
+  EXPECT_GT(int(line["breached"]), 0);  // between some pairs lies the wall
+  EXPECT_EQ(int(line["found"]) + int(line["breached"]), 4);
   const Ran drive = run("drive", {"--plugin", TALUS_STRAIGHT_PLUGIN, "--truth", "truth.yaml", "--start",
                                   "5,4", "--goal", "15,4", "--belief", "prior", "--json"});
   EXPECT_EQ(drive.code, 0) << drive.err;
