@@ -99,24 +99,6 @@ std::string planText(const Route& route, const Timing& seconds) {
                                              seconds.load_s, seconds.costmap_s, seconds.plan_s, proof));
 }
 
-void writeFiles(const PlanOptions& options, const Ground& ground, const Route& route,
-                const Context& context) {
-  const planner::RouteOrigin origin = originOf(ground, context);
-  const auto document = routeGeoJson(route, ground.map.elevation(), origin);
-  if (!options.output.empty() && !(options.corridor_percent > 0.0))
-    planner::writeRoute(options.output, document, ground.map.elevation(),
-                        [&](std::string_view line) { context.warn(line); });
-  if (options.html.empty() && options.png.empty()) return;
-  const ProgressMonitor drawing = context.watch("draw");
-  const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
-  const std::string cut = route.interrupted ? " (interrupted: best route so far)" : "";
-  Scene scene = sceneOf(ground.map, {.title = "Route across " + name + cut});
-  addImage(scene, options.image);
-  addRoute(scene, route);
-  addProvenance(scene, origin);
-  saveScene(scene, options.html, options.png);
-}
-
 int exitOf(RouteStatus status) {
   switch (status) {
     case RouteStatus::Found:
@@ -149,7 +131,27 @@ struct Planned {
   PlanRequest request;
   Route route;
   double plan_s = 0.0;
+  maps::Raster<std::uint32_t> picture{};  // of the ground, read before planning; empty: none
 };
+
+void writeFiles(const PlanOptions& options, const Planned& planned, const Context& context) {
+  const Ground& ground = planned.ground;
+  const Route& route = planned.route;
+  const planner::RouteOrigin origin = originOf(ground, context);
+  const auto document = routeGeoJson(route, ground.map.elevation(), origin);
+  if (!options.output.empty() && !(options.corridor_percent > 0.0))
+    planner::writeRoute(options.output, document, ground.map.elevation(),
+                        [&](std::string_view line) { context.warn(line); });
+  if (options.html.empty() && options.png.empty()) return;
+  const ProgressMonitor drawing = context.watch("draw");
+  const std::string name = std::filesystem::path(ground.map.elevation().source).filename().string();
+  const std::string cut = route.interrupted ? " (interrupted: best route so far)" : "";
+  Scene scene = sceneOf(ground.map, {.title = "Route across " + name + cut});
+  scene.image = planned.picture;
+  addRoute(scene, route);
+  addProvenance(scene, origin);
+  saveScene(scene, options.html, options.png);
+}
 
 // Writes the cells outside of which no route is within the stated excess over the cost of the route.
 void writeCorridor(const PlanOptions& options, const Planned& planned, const Context& context) {
@@ -342,7 +344,7 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
   if (route.status == RouteStatus::NoRoute) drawSevered(options, planned, context);
   if (route.status != RouteStatus::Found) return refuse(route, context);
   if (options.corridor_percent > 0.0) writeCorridor(options, planned, context);
-  writeFiles(options, planned.ground, route, context);
+  writeFiles(options, planned, context);
   const Timing seconds{.load_s = planned.ground.load_s,
                        .costmap_s = planned.ground.build_s,
                        .plan_s = planned.plan_s,
@@ -394,9 +396,12 @@ int runOne(const PlanOptions& options, bool windows, Planner& planner, const Con
   if (windows) parts.emplace(windowsOn(options.ground, ground, context));
   PlanRequest request = requestOf(options, planner.capabilities(), ground, context);
   const auto map = ground.map.published();
+  const maps::ElevationMap& heights = ground.map.elevation();
+  maps::Raster<std::uint32_t> picture = groundPicture(options.image, heights.georeference, heights.grid());
   Planned route = timedPlan(std::move(ground), std::move(request), [&](const PlanRequest& asked) {
     return parts ? planner.plan(*parts, asked) : planner.plan(map, asked);
   });
+  route.picture = std::move(picture);
   if (context.stop.stop_requested() && route.route.vertices.empty()) return Exit::kCancelled;
   const int code = finish(options, route, context);
   if (code != Exit::kDone && context.stop.stop_requested()) letEnd(context);

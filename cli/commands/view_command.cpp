@@ -204,7 +204,7 @@ int run(const ViewOptions& options, Context& context) {
   const ProgressMonitor drawing = context.watch("draw");
   Scene scene = of_route ? routeScene(options, context) : mapScene(options, options.file.path, context);
   if (!of_route) addGroundFacts(scene);
-  addImage(scene, options.image);
+  scene.image = groundPicture(options.image, scene.georeference, scene.grid());
   if (context.stop.stop_requested()) return Exit::kCancelled;
   saveScene(scene, html, options.png);
   nlohmann::ordered_json json{{"html", html.string()}, {"facts", nlohmann::ordered_json(scene.facts)}};

@@ -386,8 +386,13 @@ Scene sceneOf(const planner::Route& route, const SceneOptions& options) {
   return scene;
 }
 
-void addImage(Scene& scene, const std::string& path) {
-  if (!path.empty()) scene.image = maps::readImage(path, scene.georeference, scene.grid());
+Raster<std::uint32_t> groundPicture(const std::string& path, const std::optional<maps::Georeference>& place,
+                                    const maps::Grid& grid) {
+  if (path.empty()) return {};
+  constexpr int kSide = 1024;
+  const int parts = std::max(1, kSide / std::max(grid.width, grid.height));
+  return maps::readImage(
+      path, place, {parts * grid.width, parts * grid.height, grid.resolution_m / parts, grid.south_west});
 }
 
 std::array<double, 4> sharesOf(const Raster<HeadingShares>& headings) {

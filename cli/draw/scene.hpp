@@ -240,8 +240,11 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
 /// Returns the scene of a route without a map: an empty area around the route.
 Scene sceneOf(const planner::Route& route, const SceneOptions& options);
 
-/// Adds a picture of the ground, such as an orthophoto, from a file; nothing for an empty path. @throws InputError
-void addImage(Scene& scene, const std::string& path);
+/// Returns a picture of the ground, such as an orthophoto, over a map's grid, for Scene::image: cells that are divided
+/// until the longer side has up to 1024 pixels. Empty without a path. Throws the exceptions of maps::readImage().
+maps::Raster<std::uint32_t> groundPicture(const std::string& path,
+                                          const std::optional<maps::Georeference>& place,
+                                          const maps::Grid& grid);
 
 /// Adds what the ground is like to the facts: shares of the allowed headings, and the distribution of each layer.
 void addGroundFacts(Scene& scene);

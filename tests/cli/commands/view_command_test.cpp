@@ -62,6 +62,13 @@ TEST(ViewCommand, MissionAndPictureAreShown) {
        {R"("areas":[{"name":"keep-out")", R"("marks":[{"letter":"S","x":3.0,"y":3.0},{"letter":"G")",
         R"("layers":[{"name":"image")"})
     EXPECT_THAT(fileContent(folder / "m.html"), HasSubstr(part));
+  runTalus({"generate", "craters", "--size", "40", "--seed", "1", "-o", "placed.tif", "--quiet"},
+           folder.path());
+  const Ran placed = runTalus(
+      {"plan", "m.yaml", "-o", "r.geojson", "--html", "r.html", "--image", "placed.tif"}, folder.path());
+  EXPECT_EQ(placed.code, 2) << placed.out;
+  EXPECT_THAT(placed.err, HasSubstr("only one of it and the map has a CRS"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.geojson"));
 }
 
 // The map and the route are in two folders; the program runs in a third.
