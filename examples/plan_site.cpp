@@ -1,5 +1,8 @@
-// Shows   planning on a site of files after a drive. Needs talus::site. `talus generate rocks -o hill.tif` makes such files.
+// Shows   planning on a site of files after a drive. Needs talus::site.
 // Prints  rows learned, length, energy and proven gap of the route, and its vertices.
+// Files   talus generate rocks --size 330x140 -o hill.tif; echo '{}' >truth.yaml
+//         talus drive hill.tif --terrain hill_classes.tif --soils hill_soils.yaml --rover mer --truth truth.yaml
+//         --start 12,30 --goal 60,50 --telemetry drive.csv   (on the same line)
 #include <cstdio>
 #include <exception>
 #include <utility>
