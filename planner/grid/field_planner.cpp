@@ -119,17 +119,24 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
   if (stop()) return cancelledPlan(stop);
   const MotionCost cost(problem.map);
   const Segment places{stage.from, stage.to};
-  if (bound_.prepare(problem.map, stage.to, stage.tolerance_m, stop)) {
+  HeadingSets& headings = headingsOf(problem);
+  // A start or goal in a small pocket is proven to be one before any search on the whole map.
+  const std::size_t pocket = problem.map->grid().size() / 64;
+  std::optional<Reach> reach(std::in_place, *problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop,
+                             nullptr, pocket);
+  Reach back(*problem.map, headings, Reach::Sense::To, stage.to, stage.tolerance_m, stop, nullptr, pocket);
+  const bool closed = (reach->complete() && !reach->reaches(stage.to, stage.tolerance_m)) ||
+                      (back.complete() && !back.reaches(stage.from, 0.0));
+  if (!closed && bound_.prepare(problem.map, stage.to, stage.tolerance_m, stop)) {
     Plan found = failedPlan(RouteStatus::Found, {});
     found.points = overPoints(problem, stage, kInfinity, stop);
     if (!found.points.empty()) return found;
   }
-  HeadingSets& headings = headingsOf(problem);
-  Reach reach(*problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop);
-  if (!reach.complete()) return cancelledPlan(stop);
-  if (!reach.reaches(stage.to, stage.tolerance_m)) {
+  if (!reach->complete()) reach.emplace(*problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop);
+  if (!reach->complete()) return cancelledPlan(stop);
+  if (!reach->reaches(stage.to, stage.tolerance_m)) {
     const Obstruction why =
-        obstructionBetween(*problem.map, headings, reach, places, stage.tolerance_m, problem.hazards, stop);
+        obstructionBetween(*problem.map, headings, *reach, places, stage.tolerance_m, problem.hazards, stop);
     Plan none = failedPlan(RouteStatus::NoRoute, text(why, places));
     none.obstruction = why;
     return none;

@@ -16,7 +16,7 @@ enum : std::uint8_t { kSeen = 1, kOpen = 2 };
 }  // namespace
 
 Reach::Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,
-             double tolerance_m, const StopCheck& stop, const Reach* other)
+             double tolerance_m, const StopCheck& stop, const Reach* other, std::size_t most_cells)
     : map_(map), headings_(headings), sense_(sense), seen_(map.grid().size(), 0), other_(other) {
   for (const Cell cell : cellsWithin(map.grid(), place, tolerance_m)) {
     const InCell at = inCell(map.grid(), cell, place);
@@ -24,7 +24,7 @@ Reach::Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, m
   }
   std::size_t steps = 0;
   while (!open_.empty() && !joined_) {
-    if ((++steps & 0xfffU) == 0 && stop()) {
+    if (cells_ > most_cells || ((++steps & 0xfffU) == 0 && stop())) {
       complete_ = false;
       return;
     }

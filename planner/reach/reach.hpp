@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <unordered_map>
 #include <vector>
 
@@ -32,9 +33,10 @@ class Reach {
   /// Computes the cells reachable from `place`, or the cells from which `place` or a point within
   /// `tolerance_m` of it can be reached. `place` must lie inside the map. `other`, if given, is a reachable
   /// set of the opposite sense over the same cells or a part of them; the computation then ends as soon as a
-  /// common cell connects both places.
+  /// common cell connects both places. The computation also ends, incomplete, above `most_cells` cells.
   Reach(const costmap::CostGrid& map, HeadingSets& headings, Sense sense, maps::Point place,
-        double tolerance_m = 0.0, const StopCheck& stop = {}, const Reach* other = nullptr);
+        double tolerance_m = 0.0, const StopCheck& stop = {}, const Reach* other = nullptr,
+        std::size_t most_cells = std::numeric_limits<std::size_t>::max());
 
   /// Returns true if the set contains the cell.
   bool holds(maps::Cell cell) const noexcept {
@@ -49,7 +51,7 @@ class Reach {
   /// Returns true if a drive exists between the places of this set and of `other`, through a common cell in
   /// which a drive can move in every direction.
   bool joined() const noexcept { return joined_; }
-  /// Returns false if a stop ended the computation; the set then proves nothing.
+  /// Returns false if a stop or `most_cells` ended the computation; the set then proves nothing.
   bool complete() const noexcept { return complete_; }
 
  private:
