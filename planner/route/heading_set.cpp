@@ -159,7 +159,13 @@ HeadingSet HeadingSet::reversed() const {
 HeadingSets::Limits::Limits(const costmap::TravelCost& cost, const costmap::TravelCurve& curve)
     : along(limitsAlong(cost, curve)),
       across(limitsAcross(cost, curve)),
-      gentle(gentleGradient(cost, curve)) {}
+      gentle(gentleGradient(cost, curve)) {
+  for (std::vector<double>* limits : {&along, &across}) {
+    std::ranges::sort(*limits);
+    const auto twice = std::ranges::unique(*limits);
+    limits->erase(twice.begin(), twice.end());
+  }
+}
 
 HeadingSet allowedHeadings(const costmap::TravelCost& cost, costmap::CellCode cell) {
   if (cell.curve() >= cost.curves().size()) return {};
