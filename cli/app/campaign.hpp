@@ -22,25 +22,14 @@ struct JobOutcome {
 /// Results by job; a missing job is of another part, or was stopped.
 using JobResults = std::map<std::size_t, std::string>;
 
-/// Part K of N of a list of jobs, for array jobs of a queue: the jobs k with k modulo N = K - 1.
-class Part {
- public:
-  /// Reads "K/N" with 1 <= K <= N <= 10000; empty: the whole list. @throws InputError
-  explicit Part(const std::string& text);
-  /// Returns the indices of the part's jobs of `count`.
-  std::vector<std::size_t> of(std::size_t count) const;
-  /// Returns the results of all parts in a folder and of this part (`own`), which is written to its file there. Each row
-  /// has a checksum over `hash` (of the jobs and their inputs), job and result. Throws InputError, and writes
-  /// nothing, for a row that is of other jobs or damaged.
-  JobResults joined(const std::string& folder, const std::string& hash, const JobResults& own) const;
-  /// Returns the result of joined(), or `own` for the whole list. Prints how many of `all` jobs, which are called `what`,
-  /// are in the folder, and returns nullopt, while some are missing there.
-  std::optional<JobResults> completed(const std::string& folder, const std::string& hash,
-                                      const JobResults& own, std::size_t all, const char* what) const;
-
- private:
-  bool stated_ = false;
-  std::size_t index_ = 0, parts_ = 1;
+/// Independent jobs, all of them or a part for an array job of a queue.
+struct JobList {
+  std::size_t count = 0;
+  std::string part{};       ///< "K/N", 1 <= K <= N <= 10000: the jobs k with k modulo N = K - 1; empty: all
+  std::string folder{};     ///< folder in which the parts keep and find their results; empty: none
+  std::string identity{};   ///< text of the jobs and their inputs: results of another text are refused
+  std::string what{};       ///< name of the jobs in messages, in plural
+  std::size_t workers = 1;  ///< number of jobs that run concurrently without MPI
 };
 
 /// Creates a folder for results before the jobs run, so that an unusable path is reported immediately. Returns true if
@@ -70,6 +59,14 @@ class Campaign {
   /// one job at a time.
   std::vector<JobOutcome> run(std::size_t count, const std::function<std::string(std::size_t)>& job,
                               const ProgressMonitor& watch = {}, std::size_t workers = 1) const;
+
+  /// Runs the jobs of the part and returns their results on rank 0; the result of a job that throws is its reason.
+  /// With a folder, writes the results of the part to it, each with a checksum over the identity, and returns those of
+  /// all parts, or prints how many there are and returns nullopt while some are missing. After a stop request, the
+  /// results completed before are returned. Other ranks return nullopt. Throws InputError, and writes nothing, for a
+  /// result in the folder that is of other jobs or damaged.
+  std::optional<JobResults> results(const JobList& jobs, const std::function<std::string(std::size_t)>& job,
+                                    const ProgressMonitor& watch) const;
 
  private:
   struct Ranks;

@@ -4,7 +4,11 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>

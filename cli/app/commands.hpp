@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -34,5 +36,23 @@ void addWheel(CLI::App& app, Context& context);
 
 /// Registers every subcommand.
 void addCommands(CLI::App& app, Context& context);
+
+/// Options of `talus reproduce`.
+struct ReproduceOptions {
+  std::string output = ".";
+  std::string measured;
+  bool goals_only = false;
+  bool published = false;      ///< print the published results alone
+  std::string published_name;  ///< one of them; empty: all
+  int soils = 500;
+};
+
+/// Registers the subcommand `reproduce` and the function `run` that executes it. The program talus-reproduce
+/// passes its own `run`; in the program talus, `run` starts talus-reproduce.
+void addReproduce(CLI::App& app, Context& context, int (*run)(const ReproduceOptions&, Context&));
+
+/// Runs the program with the subcommands that the function `add` registers, and returns the exit code. Every
+/// error is printed as one line to stderr.
+int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&));
 
 }  // namespace talus::cli

@@ -6,6 +6,7 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -100,14 +101,17 @@ void checkNumbers(const CLI::App& command) {
   }
 }
 
-CLI::Validator within(double low, double high) {
-  const auto check = [low, high](const std::string& text) -> std::string {
+CLI::Validator numberThat(std::function<bool(double)> holds, const std::string& must) {
+  const auto check = [holds = std::move(holds), must](const std::string& text) -> std::string {
     double value = 0.0;
     const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-    if (number && value >= low && value <= high) return "";
-    return fmt::format("{}, must be {}", text, bound(low, high));
+    return number && holds(value) ? "" : text + ", must be " + must;
   };
   return CLI::Validator(check, "");
+}
+
+CLI::Validator within(double low, double high) {
+  return numberThat([low, high](double value) { return value >= low && value <= high; }, bound(low, high));
 }
 
 CLI::Validator notNegative() {
@@ -115,12 +119,7 @@ CLI::Validator notNegative() {
 }
 
 CLI::Validator positive() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0.0;
-    const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-    return number && value > 0.0 ? "" : text + ", must be finite, > 0";
-  };
-  return CLI::Validator(check, "");
+  return numberThat([](double value) { return value > 0.0; }, "finite, > 0");
 }
 
 CLI::Validator finite() {
@@ -128,11 +127,8 @@ CLI::Validator finite() {
 }
 
 CLI::Validator heading() {
-  const auto check = [](const std::string& text) -> std::string {
-    if (within(-2 * std::numbers::pi, 2 * std::numbers::pi)(text).empty()) return "";
-    return text + ", must be an angle in radians, -2 pi to 2 pi; for degrees use the option with -deg";
-  };
-  return CLI::Validator(check, "");
+  return numberThat([](double rad) { return std::abs(rad) <= 2 * std::numbers::pi; },
+                    "an angle in radians, -2 pi to 2 pi; for degrees use the option with -deg");
 }
 
 namespace {

@@ -2,13 +2,8 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/estimate/model_pull.hpp>
 

@@ -2,15 +2,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 

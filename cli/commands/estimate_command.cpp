@@ -2,16 +2,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/plot.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
@@ -253,7 +247,7 @@ std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e
 
 void writePage(const EstimateCommand& options, const SoilEstimate& e,
                const std::vector<std::string>& warnings) {
-  HtmlReport page("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
+  Report page("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
   page.paragraph(
       fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
   page.table({{"quantity", "value", "standard deviation"},

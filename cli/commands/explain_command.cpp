@@ -1,16 +1,9 @@
 // talus explain DEM --at P [--heading RAD]: explains the category and cost of a cell.
 #include <cmath>
 #include <optional>
-#include <string>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/maps/maps_io.hpp>
 

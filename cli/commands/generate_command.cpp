@@ -7,13 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
-#include <talus/common/common.hpp>
 #include <talus/common/limits.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/sites/site_generator.hpp>

@@ -1,12 +1,8 @@
 // talus info DEM: properties of a map, for checks before planning.
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/maps/maps.hpp>
 #include <talus/planner/route/route_json.hpp>
 

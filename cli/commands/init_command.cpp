@@ -5,14 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/common/common.hpp>
 #include <talus/planner/route/polyline.hpp>
 
 namespace talus::cli {

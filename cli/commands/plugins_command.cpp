@@ -1,9 +1,4 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
 #include <talus/planner/route/problem.hpp>
 

@@ -1,11 +1,5 @@
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/prediction_table.hpp>
 #include <talus/terramech/terramech_io.hpp>
 

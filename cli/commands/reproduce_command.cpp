@@ -5,9 +5,6 @@
 #include <unistd.h>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/commands/reproduce_command.hpp>
-#include <talus/common/common.hpp>
 
 namespace talus::cli {
 namespace {

@@ -1,16 +1,8 @@
 // talus score DEM --path FILE: cost of a polyline under the planners' cost function.
 #include <cmath>
-#include <memory>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>

@@ -1,15 +1,8 @@
 #include <cmath>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
@@ -165,7 +158,7 @@ int run(const TraceCommandOptions& options, Context& context) {
   const terramech::TableTrace trace = terramech::traceTable(table, how, watch);
   if (watch.stopped()) return Exit::kCancelled;
   if (!options.model_out.empty()) writeModel(options.model_out, trace, context);
-  if (!options.html.empty()) writeFile(options.html, tracePage(trace));
+  if (!options.html.empty()) writeFile(options.html, traceReport(trace, true).html());
   const auto runs = options.propose > 0 ? terramech::proposeRuns(trace.result, options.propose)
                                         : std::vector<terramech::ProposedRun>{};
   if (!options.runs_out.empty() && !runs.empty())
@@ -175,7 +168,7 @@ int run(const TraceCommandOptions& options, Context& context) {
   nlohmann::ordered_json json = traceJson(trace);
   if (options.propose > 0) json["proposals"] = proposalsJson(runs);
   if (!scores.empty()) json["scores"] = scoresJson(scores);
-  context.answer(json, traceText(trace) +
+  context.answer(json, traceReport(trace, false).text() +
                            (options.propose > 0 ? proposalText(runs, trace.result.trial) : "") +
                            causeScoreText(scores));
   return trace.applies.applies ? Exit::kDone : Exit::kNo;

@@ -3,23 +3,15 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
 #include <talus/terramech/terramech_io.hpp>

@@ -2,24 +2,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/common/common.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 #include <talus/maps/maps_io.hpp>

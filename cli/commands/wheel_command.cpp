@@ -1,15 +1,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/options.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/terramech_io.hpp>

@@ -398,14 +398,6 @@ std::vector<WorldLine> drivesOf(const BenchmarkPlan& plan, const std::vector<Ben
   return lines;
 }
 
-std::string asText(const std::vector<WorldLine>& lines) {
-  return lines.empty() ? "" : "\n" + tableText(worldRows(lines));
-}
-
-std::string asText(const std::vector<BenchmarkLine>& lines) {
-  return tableText(lineRows(lines));
-}
-
 nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives) {
   auto array = nlohmann::ordered_json::array();
   for (const BenchmarkLine& line : lines) {
@@ -430,10 +422,10 @@ std::vector<Plot> gapsOverTime(const BenchmarkPlan& plan, const std::vector<Benc
   return plots;
 }
 
-std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
-  HtmlReport page("Planner benchmark");
+Report benchReport(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  Report page("Planner benchmark");
   if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
-    page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));
+    page.paragraph(fmt::format("cancelled: {} of {} runs", runs.size(), asked));
   const std::vector<BenchmarkLine> lines = compared(plan, runs);
   page.paragraph(fastestText(lines));
   std::vector<Plot> plots = gapsOverTime(plan, runs);
@@ -457,7 +449,7 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
       "The curves are those of the first seed of each planner whose final route passes the check. "
       "Intermediate costs are those that "
       "the planner reports; none is drawn below the cost of the final route.");
-  return page.html();
+  return page;
 }
 
 }  // namespace talus::cli
