@@ -53,34 +53,6 @@ void requireJoinedRanks(int joined, const std::string& reason) {
                   launch->ranks, launch->variable, reason));
 }
 
-JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::size_t i,
-                     const ProgressMonitor& watch) {
-  const JobOutcome stopped{.failed = true, .stopped = true, .text = "cancelled"};
-  if (watch.stopped()) return stopped;
-  try {
-    JobOutcome made{.text = job(i)};
-    return made.text.empty() && watch.stopped() ? stopped : made;
-  } catch (const std::exception& error) {
-    return {.failed = true, .text = error.what()};
-  }
-}
-
-// Each job writes its own element of the result, so that the order of the jobs does not matter. Only the
-// caller's thread reports progress.
-std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                                const ProgressMonitor& watch, std::size_t workers) {
-  std::vector<JobOutcome> outcomes(count);
-  std::atomic<std::size_t> done{0};
-  const auto caller = std::this_thread::get_id();
-  parallelFor(count, static_cast<int>(workers), [&](std::size_t i) {
-    outcomes[i] = outcomeOf(job, i, watch);
-    ++done;
-    if (std::this_thread::get_id() == caller)
-      watch.report(static_cast<double>(done) / static_cast<double>(count));
-  });
-  return outcomes;
-}
-
 /// Part of a list of jobs: the jobs k with k modulo `parts` = `index`.
 struct Part {
   std::size_t index = 0, parts = 1;
@@ -149,6 +121,29 @@ JobResults joined(const JobList& jobs, const Part& part, const JobResults& own) 
 
 }  // namespace
 
+// The outcome of a job, which a rank sends as one message.
+struct Campaign::Outcome {
+  std::size_t job = 0;
+  bool stopped = false;  // true if a stop was requested before the job had a result
+  std::string text;      // result of the job, or reason of its failure
+
+  static Outcome of(const std::function<std::string(std::size_t)>& job, std::size_t i,
+                    const ProgressMonitor& watch) {
+    if (watch.stopped()) return {i, true, {}};
+    try {
+      const std::string text = job(i);
+      return {i, text.empty() && watch.stopped(), text};
+    } catch (const std::exception& error) {
+      return {i, false, error.what()};
+    }
+  }
+
+  template <typename Archive>
+  void serialize(Archive& archive, unsigned) {
+    archive& job& stopped& text;
+  }
+};
+
 std::optional<JobResults> Campaign::results(const JobList& jobs,
                                             const std::function<std::string(std::size_t)>& job,
                                             const ProgressMonitor& watch) const {
@@ -161,8 +156,8 @@ std::optional<JobResults> Campaign::results(const JobList& jobs,
       own.size(), [&](std::size_t i) { return job(own[i]); }, watch, jobs.workers);
   if (!leads()) return std::nullopt;
   JobResults results;
-  for (std::size_t i = 0; i < outcomes.size(); ++i)
-    if (!outcomes[i].stopped) results[own[i]] = outcomes[i].text;
+  for (const Outcome& one : outcomes)
+    if (!one.stopped) results[own[one.job]] = one.text;
   if (!joins || watch.stopped()) return results;
   results = joined(jobs, part, results);
   if (results.size() == jobs.count) return results;
@@ -172,23 +167,6 @@ std::optional<JobResults> Campaign::results(const JobList& jobs,
 }
 
 #ifdef TALUS_MPI
-
-namespace {
-
-constexpr int kTag = 1;
-
-// The outcome of a job as one message.
-struct Answer {
-  std::size_t job = 0;
-  JobOutcome outcome;
-
-  template <typename Archive>
-  void serialize(Archive& archive, unsigned) {
-    archive& job& outcome.failed& outcome.stopped& outcome.text;
-  }
-};
-
-}  // namespace
 
 struct Campaign::Ranks {
   boost::mpi::environment environment;
@@ -214,23 +192,23 @@ bool Campaign::leads() const noexcept {
 
 // Rank 0 runs its own jobs and receives the outcomes of other ranks between them, then the remaining
 // outcomes.
-std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                                      const ProgressMonitor& watch, std::size_t workers) const {
-  if (!mpi_) return runHere(count, job, watch, workers);
+std::vector<Campaign::Outcome> Campaign::runRanks(std::size_t count,
+                                                  const std::function<std::string(std::size_t)>& job,
+                                                  const ProgressMonitor& watch) const {
+  constexpr int kTag = 1;
   const boost::mpi::communicator& world = mpi_->world;
-  std::vector<JobOutcome> outcomes(leads() ? count : 0);
-  std::size_t done = 0;
-  const auto keep = [&](Answer answer) {
-    outcomes[answer.job] = std::move(answer.outcome);
-    watch.report(static_cast<double>(++done) / static_cast<double>(count));
+  std::vector<Outcome> outcomes;
+  const auto keep = [&](Outcome outcome) {
+    outcomes.push_back(std::move(outcome));
+    watch.report(static_cast<double>(outcomes.size()) / static_cast<double>(count));
   };
   const auto receive = [&] {
-    Answer answer;
-    world.recv(boost::mpi::any_source, kTag, answer);
-    keep(std::move(answer));
+    Outcome outcome;
+    world.recv(boost::mpi::any_source, kTag, outcome);
+    keep(std::move(outcome));
   };
   for (auto i = static_cast<std::size_t>(world.rank()); i < count; i += static_cast<std::size_t>(ranks())) {
-    Answer own{i, outcomeOf(job, i, watch)};
+    Outcome own = Outcome::of(job, i, watch);
     if (!leads()) {
       world.send(0, kTag, own);
       continue;
@@ -238,7 +216,7 @@ std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std
     while (world.iprobe(boost::mpi::any_source, kTag)) receive();
     keep(std::move(own));
   }
-  while (leads() && done < count) receive();
+  while (leads() && outcomes.size() < count) receive();
   return outcomes;
 }
 
@@ -254,14 +232,32 @@ bool Campaign::leads() const noexcept {
   return true;
 }
 
-std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                                      const ProgressMonitor& watch, std::size_t workers) const {
-  return runHere(count, job, watch, workers);
+std::vector<Campaign::Outcome> Campaign::runRanks(std::size_t, const std::function<std::string(std::size_t)>&,
+                                                  const ProgressMonitor&) const {
+  return {};
 }
 
 #endif
 
 Campaign::~Campaign() = default;
+
+// In one process, each job writes its own element of the result, so that the order of the jobs does not matter. Only the
+// caller's thread reports progress.
+std::vector<Campaign::Outcome> Campaign::run(std::size_t count,
+                                             const std::function<std::string(std::size_t)>& job,
+                                             const ProgressMonitor& watch, std::size_t workers) const {
+  if (mpi_) return runRanks(count, job, watch);
+  std::vector<Outcome> outcomes(count);
+  std::atomic<std::size_t> done{0};
+  const auto caller = std::this_thread::get_id();
+  parallelFor(count, static_cast<int>(workers), [&](std::size_t i) {
+    outcomes[i] = Outcome::of(job, i, watch);
+    ++done;
+    if (std::this_thread::get_id() == caller)
+      watch.report(static_cast<double>(done) / static_cast<double>(count));
+  });
+  return outcomes;
+}
 
 void requireMpiForRanks() {
 #ifndef TALUS_MPI

@@ -12,13 +12,6 @@
 
 namespace talus::cli {
 
-/// Result of one job.
-struct JobOutcome {
-  bool failed = false;
-  bool stopped = false;  ///< true if the job failed because a stop was requested before the job had a result
-  std::string text;      ///< result of the job, or reason of its failure
-};
-
 /// Results by job; a missing job is of another part, or was stopped.
 using JobResults = std::map<std::size_t, std::string>;
 
@@ -52,24 +45,24 @@ class Campaign {
   int ranks() const noexcept;
   bool leads() const noexcept;  ///< true on rank 0, the only rank that receives results and prints
 
-  /// Returns on rank 0 the outcomes of job(0) .. job(count - 1) in order, and an empty vector on other ranks.
-  /// A job that throws is marked as failed; the other jobs continue. After a stop request, each rank
-  /// completes its current job; jobs not started, and jobs that return an empty text, are marked as failed
-  /// and stopped. Without MPI, `workers` jobs run concurrently and must be thread-safe. With MPI, a rank runs
-  /// one job at a time.
-  std::vector<JobOutcome> run(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                              const ProgressMonitor& watch = {}, std::size_t workers = 1) const;
-
-  /// Runs the jobs of the part and returns their results on rank 0; the result of a job that throws is its reason.
+  /// Runs the jobs of the part and returns their results on rank 0; the result of a job that throws is its reason. After a
+  /// stop request, each rank completes its current job; jobs not started, and jobs that return an empty text, have no
+  /// result. Without MPI, `workers` jobs run concurrently and must be thread-safe; with MPI, a rank runs one at a time.
   /// With a folder, writes the results of the part to it, each with a checksum over the identity, and returns those of
-  /// all parts, or prints how many there are and returns nullopt while some are missing. After a stop request, the
-  /// results completed before are returned. Other ranks return nullopt. Throws InputError, and writes nothing, for a
-  /// result in the folder that is of other jobs or damaged.
+  /// all parts, or prints how many there are and returns nullopt while some are missing. Other ranks return nullopt.
+  /// Throws InputError, and writes nothing, for a result in the folder that is of other jobs or damaged.
   std::optional<JobResults> results(const JobList& jobs, const std::function<std::string(std::size_t)>& job,
                                     const ProgressMonitor& watch) const;
 
  private:
+  struct Outcome;
   struct Ranks;
+
+  std::vector<Outcome> run(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                           const ProgressMonitor& watch, std::size_t workers) const;
+  std::vector<Outcome> runRanks(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                                const ProgressMonitor& watch) const;
+
   std::unique_ptr<Ranks> mpi_;  // null in a plain run
 };
 

@@ -9,8 +9,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <talus/cli/app/options.hpp>
+#include <talus/cli/app/texts.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/limits.hpp>
 
@@ -183,7 +185,11 @@ std::string remarks(const CLI::Option* option) {
   const auto colon = endOfTypeName(type);
   if (option->get_required()) add("required", " ");
   if (colon != std::string::npos) add("", checkText(type.substr(colon + 1)));
-  add("default: ", option->get_default_str());
+  // 0 and NaN mean that the option has no effect unless it is given, and the description may name the default.
+  const std::string value = option->get_default_str();
+  const bool shown = value != "0" && value != "nan" && value != "[]" &&
+                     option->get_description().find("default") == std::string::npos;
+  if (shown) add("default: ", value);
   add("not with ", namesOf(option->get_excludes()));
   add("needs ", namesOf(option->get_needs()));
   std::string text;
@@ -246,6 +252,18 @@ std::string HelpFormat::make_option(const CLI::Option* option, bool is_positiona
 
 std::string HelpFormat::make_subcommand(const CLI::App* command) const {
   return entry(command->get_display_name(true), command->get_description());
+}
+
+CLI::App& addSubcommand(CLI::App& app, const std::string& name) {
+  const YAML::Node text = texts()["calls"][name];
+  CLI::App& command = *app.add_subcommand(name, text["description"].as<std::string>());
+  command.group(text["group"].as<std::string>());
+  command.set_help_flag("-h,--help", "print this help; `talus --help` lists the options of all calls");
+  std::string footer = "Examples:\n";
+  for (const YAML::Node& example : text["examples"]) footer += "  " + example.as<std::string>() + "\n";
+  if (text["remarks"]) footer += "\n" + text["remarks"].as<std::string>();
+  command.footer(footer);
+  return command;
 }
 
 void groupOptions(CLI::App& command, const std::string& heading) {

@@ -65,6 +65,9 @@ class HelpFormat : public CLI::Formatter {
   std::string make_subcommand(const CLI::App* command) const override;
 };
 
+/// Adds a subcommand with its texts in cli/app/texts.yaml: group, purpose, and examples with remarks as footer.
+CLI::App& addSubcommand(CLI::App& app, const std::string& name);
+
 /// Assigns the heading `heading` in --help to all options of the command that have no heading yet.
 void groupOptions(CLI::App& command, const std::string& heading);
 

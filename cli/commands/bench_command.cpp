@@ -26,12 +26,11 @@ struct BenchOptions {
 };
 
 void bind(CLI::App& command, BenchOptions& options) {
-  command
-      .add_option("suite", options.suite.names,
-                  "one or more of: generated (crater field, dunes, rocks), slip (uncertain slip; routes are "
-                  "driven over the true slip), grids (walls, known optimum), an elevation file, a MovingAI "
-                  ".scen beside its .map")
-      ->capture_default_str();
+  command.add_option(
+      "suite", options.suite.names,
+      "one or more of: generated (crater field, dunes, rocks), slip (uncertain slip; routes are "
+      "driven over the true slip), grids (walls, known optimum), an elevation file, a MovingAI "
+      ".scen beside its .map");
   command
       .add_option("--planners", options.planners,
                   "planners to compare, separated by commas (default: all). OMPL's begin with the field's "
@@ -40,29 +39,23 @@ void bind(CLI::App& command, BenchOptions& options) {
       ->delimiter(',');
   addOption(command, "--plugin FILE.so", options.plugins, "planner plugin to compare, too; may be repeated");
   command.add_option("--runs", options.runs, "runs per case and planner, each with its own seed")
-      ->check(positive())
-      ->capture_default_str();
-  addOption(command, "--time S", options.time_limit_s, "time limit of one run")
-      ->check(positive())
-      ->capture_default_str();
-  command.add_option("--pairs", options.suite.pairs, "start and goal pairs per map")
-      ->check(positive())
-      ->capture_default_str();
+      ->check(positive());
+  addOption(command, "--time S", options.time_limit_s, "time limit of one run")->check(positive());
+  command.add_option("--pairs", options.suite.pairs, "start and goal pairs per map")->check(positive());
   addOption(command, "--turning-radius METRES", options.suite.turning_radius_m,
             "minimum turning radius of planners with kinematics; 0: the rover turns in place (default: "
             "the rover's)")
       ->check(turningRadius());
   command.add_option("--side", options.suite.side_cells, "side of a generated site, in cells")
-      ->check(CLI::Range(32, 10000))
-      ->capture_default_str();
+      ->check(CLI::Range(32, 10000));
   addOption(command, "--part K/N", options.part,
             "run part K of N alone, and keep its results in the folder; the call that finds the last part "
             "there writes the comparison");
   groupOptions(command, "Cases and runs");
   addReadOptions(command, options.suite.ground.elevation);
   addGroundChoices(command, options.suite.ground);
-  addOption(command, "-o,--output FOLDER", options.folder, "folder for the OMPL logs, the table and the page")
-      ->capture_default_str();
+  addOption(command, "-o,--output FOLDER", options.folder,
+            "folder for the OMPL logs, the table and the page");
   groupOptions(command, "Output");
 }
 
@@ -167,16 +160,7 @@ int run(const BenchOptions& options, Context& context) {
 }  // namespace
 
 void addBench(CLI::App& app, Context& context) {
-  addCommand<BenchOptions>(
-      app, context,
-      {.name = "bench",
-       .group = Group::kRoutes,
-       .description = "compare planners on the same cases; write logs, a table and a page",
-       .examples = "  talus bench --planners field,RRTstar:cold --time 5\n"
-                   "  talus bench gale.tif --pairs 10 -o gale_bench\n"
-                   "  talus bench room.scen --planners field\n"
-                   "  talus bench generated slip grids maps/*.tif --pairs 4\n"},
-      bind, run);
+  addCommand<BenchOptions>(app, context, "bench", bind, run);
 }
 
 }  // namespace talus::cli

@@ -139,13 +139,7 @@ int run(const CheckOptions& options, Context& context) {
 }  // namespace
 
 void addCheck(CLI::App& app, Context& context) {
-  addCommand<CheckOptions>(
-      app, context,
-      {.name = "check",
-       .group = Group::kHelp,
-       .description = "run cases of a file: operation, input, expect, tolerance",
-       .examples = "  talus check examples/reference.yaml\n  talus check mine.yaml --json\n"},
-      bind, run);
+  addCommand<CheckOptions>(app, context, "check", bind, run);
 }
 
 }  // namespace talus::cli

@@ -117,14 +117,7 @@ int run(CostmapOptions& options, Context& context) {
 }  // namespace
 
 void addCostmap(CLI::App& app, Context& context) {
-  addCommand<CostmapOptions>(
-      app, context,
-      {.name = "costmap",
-       .group = Group::kMaps,
-       .description = "build the traversability map: category, drawbar pull, energy per cell",
-       .examples = "  talus costmap gale.tif -o gale.ot --geotiff layers.tif\n"
-                   "  talus costmap dem.tif --terrain classes.tif --soils soils.yaml -o map.ot\n"},
-      bind, run);
+  addCommand<CostmapOptions>(app, context, "costmap", bind, run);
 }
 
 }  // namespace talus::cli

@@ -113,13 +113,7 @@ int run(const DoctorOptions& options, Context& context) {
 }  // namespace
 
 void addDoctor(CLI::App& app, Context& context) {
-  addCommand<DoctorOptions>(
-      app, context,
-      {.name = "doctor",
-       .group = Group::kHelp,
-       .description = "print the values in force, drivers, planners and what is missing",
-       .examples = "  talus doctor\n  talus doctor --json\n"},
-      bind, run);
+  addCommand<DoctorOptions>(app, context, "doctor", bind, run);
 }
 
 }  // namespace talus::cli

@@ -46,15 +46,12 @@ std::string refusedBelief(const std::string& word) {
 void bindSensors(CLI::App& command, DriveCommandOptions& options) {
   const auto& faults = planner::sensorFaultNames();
   command.add_option("--fault", options.fault, "sensor fault during the whole traverse")
-      ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())))
-      ->capture_default_str();
+      ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())));
   addOption(command, "--pose-drift SHARE", options.sensors.pose_drift,
             "drift of the estimated pose per metre driven")
-      ->check(CLI::Range(0.0, planner::kMostPoseDrift))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, planner::kMostPoseDrift));
   command.add_option("--noise", options.noise, "noise and dropouts of slip, torque and sinkage")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"on", "off"}));
 }
 
 planner::SensorOptions sensorsOf(const DriveCommandOptions& options) {
@@ -80,8 +77,7 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
           "what the planner knows of the soil: geometry only, the prior (along-only: and slopes along the "
           "heading alone), the prior updated online by telemetry, or the true soil (perfect knowledge); "
           "`all` compares the five in the same worlds")
-      ->check(CLI::Validator(refusedBelief, "{geometry,along-only,prior,online,perfect-knowledge,all}"))
-      ->capture_default_str();
+      ->check(CLI::Validator(refusedBelief, "{geometry,along-only,prior,online,perfect-knowledge,all}"));
   auto* worlds = addOption(command, "--worlds N", options.worlds,
                            "number of random worlds; --threads run at a time, or one per rank under mpirun")
                      ->check(CLI::Range(1, 100000));
@@ -100,7 +96,6 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
             "simulated wheel telemetry to write, for `talus update`")
       ->excludes(worlds);
   addOption(command, "-o,--output FOLDER", options.folder, "folder for the results of the parts")
-      ->capture_default_str()
       ->needs(part);
   groupOptions(command, "Output");
 }
@@ -129,16 +124,15 @@ int runMany(const planner::SimulationSite& site, const DriveCommandOptions& opti
       watch);
   if (!jobs) return Exit::kDone;
   const SimulatedWorlds driven = simulatedWorlds(beliefs.size(), options.worlds, *jobs);
-  nlohmann::ordered_json failed = nlohmann::ordered_json::array();
-  for (const auto& failure : driven.failures) {
+  for (const auto& failure : driven.failures)
     context.warn(fmt::format("world {} failed and is excluded: {}", failure.world, failure.reason));
-    failed.push_back({{"world", failure.world}, {"reason", failure.reason}});
-  }
   if (context.stop.stop_requested()) return Exit::kCancelled;
   BeliefResults results;
   std::copy(driven.results.begin(), driven.results.end(), results.begin());
   nlohmann::ordered_json json = all ? asJson(results) : asJson(results[0]);
-  json["failed"] = std::move(failed);
+  json["failed"] = jsonList(driven.failures, [](const auto& failure) -> nlohmann::ordered_json {
+    return {{"world", failure.world}, {"reason", failure.reason}};
+  });
   context.answer(json, all ? asText(results) : asText(results[0]));
   return Exit::kDone;
 }
@@ -208,19 +202,7 @@ int run(DriveCommandOptions& options, Context& context) {
 }  // namespace
 
 void addDrive(CLI::App& app, Context& context) {
-  addCommand<DriveCommandOptions>(
-      app, context,
-      {.name = "drive",
-       .group = Group::kRoutes,
-       .description = "simulate a traverse over soils that the planner does not know",
-       .examples =
-           std::string(
-               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --html drive.html\n"
-               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 --belief "
-               "all\n"
-               "\n") +
-           kTruthFormat},
-      bind, run);
+  addCommand<DriveCommandOptions>(app, context, "drive", bind, run);
 }
 
 }  // namespace talus::cli

@@ -50,8 +50,7 @@ void bind(CLI::App& command, EstimateCommand& options) {
             "plate width b where it is missing from the file (bevameter)")
       ->check(CLI::Range(1e-3, 10.0));
   command.add_option("--noise", options.noise, "relative standard deviation of each reading (wong-reece)")
-      ->check(CLI::Range(1e-4, 0.5))
-      ->capture_default_str();
+      ->check(CLI::Range(1e-4, 0.5));
   command.add_flag("--recursive", options.recursive,
                    "process the rows one by one in constant memory; print the estimate after each row");
   groupOptions(command, "Method");
@@ -61,16 +60,14 @@ void bind(CLI::App& command, EstimateCommand& options) {
 }
 
 Json runningJson(const SoilEstimate& e) {
-  Json rows = Json::array();
-  for (const RunningSoil& r : e.running) {
-    rows.push_back({{"line", r.line},
-                    {"cohesion_Pa", r.cohesion_Pa},
-                    {"cohesion_std_Pa", std::sqrt(r.covariance(0, 0))},
-                    {"friction_angle_rad", r.friction_angle_rad},
-                    {"friction_angle_std_rad", frictionStd_rad(r.covariance, r.friction_angle_rad)},
-                    {"shear_modulus_m", r.shear_modulus_m}});
-  }
-  return rows;
+  return jsonList(e.running, [](const RunningSoil& r) -> Json {
+    return {{"line", r.line},
+            {"cohesion_Pa", r.cohesion_Pa},
+            {"cohesion_std_Pa", std::sqrt(r.covariance(0, 0))},
+            {"friction_angle_rad", r.friction_angle_rad},
+            {"friction_angle_std_rad", frictionStd_rad(r.covariance, r.friction_angle_rad)},
+            {"shear_modulus_m", r.shear_modulus_m}};
+  });
 }
 
 Json soilsJson(const SoilEstimate& e) {
@@ -296,15 +293,7 @@ int run(const EstimateCommand& asked, Context& context) {
 }  // namespace
 
 void addEstimate(CLI::App& app, Context& context) {
-  addCommand<EstimateCommand>(
-      app, context,
-      {.name = "estimate",
-       .group = Group::kSoil,
-       .description = "estimate soil parameters from wheel telemetry",
-       .examples = "  talus estimate drive.csv --method wong-reece --noise 0.03\n"
-                   "  talus estimate drive.csv --method linear-offset --shear-modulus 0.015\n"
-                   "  talus estimate drive.csv --method wong-reece --model refined.yaml\n"},
-      bind, run);
+  addCommand<EstimateCommand>(app, context, "estimate", bind, run);
 }
 
 }  // namespace talus::cli

@@ -163,12 +163,7 @@ int run(const HelpOptions& options, Context& context) {
 }  // namespace
 
 void addHelp(CLI::App& app, Context& context) {
-  addCommand<HelpOptions>(app, context,
-                          {.name = "help",
-                           .group = Group::kHelp,
-                           .description = "print keys of files, soils, rovers, or the help of a call",
-                           .examples = "  talus help formats\n  talus help soils\n  talus help plan\n"},
-                          bind, run);
+  addCommand<HelpOptions>(app, context, "help", bind, run);
 }
 
 }  // namespace talus::cli

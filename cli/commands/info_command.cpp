@@ -83,13 +83,7 @@ int run(const InfoOptions& options, Context& context) {
 }  // namespace
 
 void addInfo(CLI::App& app, Context& context) {
-  addCommand<InfoOptions>(
-      app, context,
-      {.name = "info",
-       .group = Group::kMaps,
-       .description = "summarise an elevation map: size, CRS, body, valid fraction and slopes",
-       .examples = "  talus info gale.tif\n  talus info --resolution 0.094 yard.tif --json\n"},
-      bind, run);
+  addCommand<InfoOptions>(app, context, "info", bind, run);
 }
 
 }  // namespace talus::cli

@@ -21,7 +21,7 @@ struct InitOptions {
 
 void bind(CLI::App& command, InitOptions& options) {
   addMapOptions(command, options.map);
-  addOutput(command, "-o,--output MISSION.yaml", options.output, "mission to write")->capture_default_str();
+  addOutput(command, "-o,--output MISSION.yaml", options.output, "mission to write");
   groupOptions(command, "Output");
 }
 
@@ -132,13 +132,7 @@ int run(const InitOptions& options, Context& context) {
 }  // namespace
 
 void addInit(CLI::App& app, Context& context) {
-  addCommand<InitOptions>(
-      app, context,
-      {.name = "init",
-       .group = Group::kRoutes,
-       .description = "write a mission file for an elevation map, every key explained",
-       .examples = "  talus init gale.tif\n  talus init yard.tif --resolution 0.5 -o yard.yaml\n"},
-      bind, run);
+  addCommand<InitOptions>(app, context, "init", bind, run);
 }
 
 }  // namespace talus::cli

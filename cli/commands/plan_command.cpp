@@ -433,15 +433,7 @@ int run(PlanOptions& options, Context& context) {
 }  // namespace
 
 void addPlan(CLI::App& app, Context& context) {
-  addCommand<PlanOptions>(
-      app, context,
-      {.name = "plan",
-       .group = Group::kRoutes,
-       .description = "plan a route of least cost from start to goal",
-       .examples =
-           "  talus plan gale.tif --rover mer --start -4.59d,137.44d --goal -4.6d,137.5d -o route.geojson\n"
-           "  talus plan mission.yaml --html route.html\n"},
-      bindPlan, run);
+  addCommand<PlanOptions>(app, context, "plan", bindPlan, run);
 }
 
 }  // namespace talus::cli

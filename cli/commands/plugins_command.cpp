@@ -53,13 +53,7 @@ void bind(CLI::App& app, PluginsOptions& options) {
 }  // namespace
 
 void addPlugins(CLI::App& app, Context& context) {
-  addCommand<PluginsOptions>(app, context,
-                             {.name = "plugins",
-                              .group = Group::kRoutes,
-                              .description = "list the planners and features of a plugin or of the program",
-                              .examples = "  talus plugins\n"
-                                          "  talus plugins /usr/lib/talus/libtalus_planner.so\n"},
-                             bind, run);
+  addCommand<PluginsOptions>(app, context, "plugins", bind, run);
 }
 
 }  // namespace talus::cli

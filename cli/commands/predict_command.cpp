@@ -56,15 +56,7 @@ int run(const PredictOptions& options, Context& context) {
 }  // namespace
 
 void addPredict(CLI::App& app, Context& context) {
-  addCommand<PredictOptions>(
-      app, context,
-      {.name = "predict",
-       .group = Group::kSoil,
-       .description = "predict sinkage, torque and drawbar pull of each row with a model",
-       .examples =
-           "  talus predict drive.csv --model refined.yaml -o predicted.csv\n"
-           "  talus predict campaign.csv --model lunar_nominal --rover lunar_micro -o predicted.csv\n"},
-      bind, run);
+  addCommand<PredictOptions>(app, context, "predict", bind, run);
 }
 
 }  // namespace talus::cli

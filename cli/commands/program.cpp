@@ -175,9 +175,7 @@ void addGlobalOptions(CLI::App& app, Context& context) {
       ->transform(decimalSize())
       ->check(numberThat([](double bytes) { return bytes >= kLeastMemory_B; }, "100 MB or more, in bytes"))
       ->type_name("SIZE");
-  addOption(app, "--seed N", context.seed, "seed of the random numbers")
-      ->check(within(0.0, kGreatestSeed))
-      ->capture_default_str();
+  addOption(app, "--seed N", context.seed, "seed of the random numbers")->check(within(0.0, kGreatestSeed));
   addOption(app, "--threads N", context.threads, "maximum number of threads (default: one per core)")
       ->check(CLI::Range(1, 1024));
   app.fallthrough();
@@ -217,7 +215,7 @@ int parseAndRun(CLI::App& app, const Context& context, std::vector<std::string> 
 
 }  // namespace
 
-int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
+int run(int argc, const char* const* argv, AddCommand* add) {
   keepStandardStreams();
   Interrupt interrupt;
   silenceLibraries();
@@ -231,6 +229,7 @@ int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
     requireMpiForRanks();
     CLI::App app("Plan safe routes for rovers over soft, sloping ground.", "talus");
     app.formatter(std::make_shared<HelpFormat>());
+    app.option_defaults()->always_capture_default();
     addGlobalOptions(app, context);
     app.footer(
         "Topics: talus help formats, soils, rovers, missions. Manual page: talus help man. `./dev install`\n"

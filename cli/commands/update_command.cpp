@@ -39,8 +39,7 @@ void bind(CLI::App& command, UpdateOptions& options) {
   command
       .add_option("--pose-error", options.intake.pose_std_m,
                   "standard deviation of x_m and y_m if there is no column pose_std_m [m]")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 10.0));
   command.add_flag("--replay", options.replay, "replay the whole journal instead of a telemetry file")
       ->needs(journal);
   addOption(command, "--join OTHER.db", options.joined,
@@ -273,16 +272,7 @@ int run(const UpdateOptions& options, Context& context) {
 }  // namespace
 
 void addUpdate(CLI::App& app, Context& context) {
-  addCommand<UpdateOptions>(
-      app, context,
-      {.name = "update",
-       .group = Group::kMaps,
-       .description = "update a traversability map with the telemetry of a drive",
-       .examples = "  talus update map.ot drive.csv -o map2.ot --journal evidence.db\n"
-                   "  talus update map.ot --replay --journal evidence.db -o rebuilt.ot\n"
-                   "  talus update map.ot --list\n"
-                   "  talus update map.ot --without 0f9b12c344aa81e7 -o map2.ot\n"},
-      bind, run);
+  addCommand<UpdateOptions>(app, context, "update", bind, run);
 }
 
 }  // namespace talus::cli

@@ -207,14 +207,7 @@ int run(const ViewOptions& options, Context& context) {
 }  // namespace
 
 void addView(CLI::App& app, Context& context) {
-  addCommand<ViewOptions>(app, context,
-                          {.name = "view",
-                           .group = Group::kRoutes,
-                           .description = "write a self-contained HTML page: map layers, route and profiles",
-                           .examples = "  talus view route.geojson\n"
-                                       "  talus view careful.geojson fast.geojson -o both.html\n"
-                                       "  talus view gale.ot -o gale.html --png gale.png\n"},
-                          bind, run);
+  addCommand<ViewOptions>(app, context, "view", bind, run);
 }
 
 }  // namespace talus::cli

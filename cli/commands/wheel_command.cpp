@@ -188,15 +188,8 @@ std::string libraryText() {
 }  // namespace
 
 void addWheel(CLI::App& app, Context& context) {
-  addCommand<WheelOptions>(app, context,
-                           {.name = "wheel",
-                            .group = Group::kSoil,
-                            .description = "compute sinkage, torque, drawbar pull and side force of a wheel",
-                            .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
-                                        "  talus wheel --soil sand --rover mer --slip 0.2 --inflation 3000\n"
-                                        "  talus wheel --cases cases.csv -o forces.csv\n\n" +
-                                        libraryText()},
-                           bind, run);
+  CLI::App& command = addCommand<WheelOptions>(app, context, "wheel", bind, run);
+  command.footer(command.get_footer() + "\n" + libraryText());
 }
 
 }  // namespace talus::cli

@@ -125,14 +125,14 @@ void Report::table(const Table& table) {
   body_ += "</table></div>\n";
 }
 
-void Report::charts(const std::vector<Plot>& plots) {
+void Report::charts(const std::vector<Plot>& plots, const std::string& caption) {
   body_ += "<div class=\"charts\">\n";
   for (const Plot& plot : plots) {
     body_ += fmt::format("<figure class=\"chart\" id=\"chart{}\" aria-label=\"{}\"></figure>\n",
                          charts_.size(), escaped(plot.title));
     charts_.push_back(chartJson(plot));
   }
-  body_ += "</div>\n";
+  body_ += fmt::format("</div>\n<p>{}</p>\n", escaped(caption));
 }
 
 std::string Report::html() const {

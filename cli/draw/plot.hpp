@@ -61,9 +61,9 @@ class Report {
   void paragraph(const std::string& text);
   /// Adds a table, which scrolls where it is wider than the screen. Numeric cells are right-aligned.
   void table(const Table& table);
-  /// Adds charts, which are shown side by side if the screen is wide enough. Points that cover each other are left
-  /// out. @throws std::invalid_argument if x and y of a series differ in length
-  void charts(const std::vector<Plot>& plots);
+  /// Adds charts, which are shown side by side if the screen is wide enough, over a caption. Points that cover each
+  /// other are left out. @throws std::invalid_argument if x and y of a series differ in length
+  void charts(const std::vector<Plot>& plots, const std::string& caption = "");
 
   std::string html() const;
   const std::string& text() const noexcept { return text_; }

@@ -8,6 +8,7 @@
 
 #include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>
+#include <talus/cli/app/texts.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/vector/vector_reader.hpp>
@@ -123,14 +124,12 @@ void bindPlan(CLI::App& command, PlanOptions& options) {
             "goal tolerance: largest distance between the end of the route and the goal")
       ->check(notNegative());
   groupOptions(command, "Places");
-  addOption(command, "--planner NAME", options.planner, "planner; `talus plugins` lists them")
-      ->capture_default_str();
+  addOption(command, "--planner NAME", options.planner, "planner; `talus plugins` lists them");
   addPluginOption(command, options.plugin);
   addOption(command, "--time S", options.time_limit_s, "time limit of planning")->check(positive());
   addOption(command, "--in-memory CELLS", options.in_memory,
             "largest DEM that is read whole; a larger one is read in windows along a route over its overview")
-      ->check(notNegative())
-      ->capture_default_str();
+      ->check(notNegative());
   command.add_flag("--no-proof", options.no_proof,
                    "do not search a lower bound, nor its region for a cheaper route: quicker, for loops");
   addOption(command, "--gap SHARE", options.gap,
@@ -226,7 +225,7 @@ std::string place(const YamlFields& fields, const std::string& name, const std::
 }
 
 void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {
-  maps.only(namesOf(missionMapKeys()));
+  maps.only(namesOf(keysOf("Mission: maps")));
   ground.elevation.path = beside(given(maps, "dem"), folder);
   ground.map_file = beside(given(maps, "map"), folder);
   ground.classes = beside(given(maps, "terrain"), folder);
@@ -237,7 +236,7 @@ void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesyst
 
 void readThresholds(const YamlFields& fields, costmap::TravelPolicy& policy) {
   using Policy = costmap::TravelPolicy;
-  fields.only(namesOf(thresholdKeys()));
+  fields.only(namesOf(keysOf("Mission: thresholds")));
   for (const auto& [name, field] : {std::pair{"slope_margin_rad", &Policy::slope_margin_rad},
                                     {"sinkage_threshold", &Policy::sinkage_threshold},
                                     {"sinkage_critical", &Policy::sinkage_critical},
@@ -265,57 +264,6 @@ void applyCall(CLI::App* call) {
 
 }  // namespace
 
-std::span<const FileKey> missionKeys() {
-  static constexpr FileKey kKeys[] = {
-      {"maps", "a mapping, see below, required"},
-      {"rover", "library rover or YAML file"},
-      {"soil", "library soil or YAML file, of ground without a class"},
-      {"model", "refined wheel-soil model, YAML file of `talus trace`"},
-      {"soils", "YAML file of terrain classes and their soils"},
-      {"thresholds", "a mapping, see below"},
-      {"planner", "field (default), hybrid or a name of `talus plugins`"},
-      {"start", "x,y in map metres, [x, y], lat,lon with the suffix d on each, or a vector file"},
-      {"goal", "as start; a list of them: the goal of least cost is chosen"},
-      {"via", "as goal: places to pass in that order"},
-      {"tolerance_m", "distance from the goal that is near enough, default 0"},
-      {"time_s", "planning time of sampling planners, above 0"},
-      {"start_heading_rad", "counter-clockwise from east"},
-      {"goal_heading_rad", "counter-clockwise from east"},
-      {"reverse", "true (default) or false: whether the rover may drive backwards"},
-      {"output", "route to write, in the format that its name ends in"},
-  };
-  return kKeys;
-}
-
-std::span<const FileKey> missionMapKeys() {
-  static constexpr FileKey kKeys[] = {
-      {"dem", "elevation map; it or map is required"},
-      {"map", "traversability map of `talus costmap`"},
-      {"terrain", "raster of terrain classes"},
-      {"rocks", "raster of rock abundance, 0 to 1"},
-      {"keep_out", "polygons of a vector file"},
-      {"resolution_m", "cell size of a raster without a coordinate system"},
-      {"ignore_crs", "true: read as local metres; default false"},
-  };
-  return kKeys;
-}
-
-std::span<const FileKey> thresholdKeys() {
-  static constexpr FileKey kKeys[] = {
-      {"slope_margin_rad", "category edges at the slope -+ this, default 5 degrees"},
-      {"sinkage_threshold", "sinkage over radius below which a category stays, default 0.5"},
-      {"sinkage_critical",
-       "sinkage over radius above which ground is dangerous; default 0: clearance over radius"},
-      {"max_immobilisation", "greatest immobilisation probability of allowed ground, default 0.5"},
-      {"allow_marginal", "default true"},
-      {"allow_dangerous", "default false"},
-      {"allow_unknown", "default false"},
-      {"time_weight_W", "cost of one second [J], default 1"},
-      {"risk_weight_J", "cost of losing the rover [J], default 1e8"},
-  };
-  return kKeys;
-}
-
 bool isMission(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   return extension == ".yaml" || extension == ".yml";
@@ -333,7 +281,7 @@ std::filesystem::path folderOf(const GroundOptions& ground) {
 
 YamlFields missionOf(const GroundOptions& ground) {
   YamlFields fields = YamlFields::file(ground.elevation.path);
-  fields.only(namesOf(missionKeys()));
+  fields.only(namesOf(keysOf("Mission")));
   return fields;
 }
 
@@ -400,12 +348,12 @@ std::string keysText(std::span<const terramech::FileKey> keys,
 std::string missionText(const std::map<std::string, nlohmann::json>& values) {
   std::string text =
       "# talus plan FILE.yaml; paths are relative to this file. Take the # off what you need.\nmaps:\n" +
-      keysText(missionMapKeys(), values, "  ");
-  for (const terramech::FileKey& key : missionKeys()) {
+      keysText(keysOf("Mission: maps"), values, "  ");
+  for (const terramech::FileKey& key : keysOf("Mission")) {
     if (std::string(key.name) == "maps") continue;
     if (std::string(key.name) == "thresholds")
-      text +=
-          "# thresholds:  # uncomment with the keys that you need\n" + keysText(thresholdKeys(), {}, "#   ");
+      text += "# thresholds:  # uncomment with the keys that you need\n" +
+              keysText(keysOf("Mission: thresholds"), {}, "#   ");
     else
       text += keysText({&key, 1}, values, "");
   }
@@ -413,24 +361,6 @@ std::string missionText(const std::map<std::string, nlohmann::json>& values) {
 }
 
 using terramech::Soil;
-
-const char* const kTruthFormat =
-    "TRUTH.yaml, all parts optional (docs/simulation.md):\n"
-    "  classes: {1: dry_sand, 2: SOIL}   true soils of terrain classes, if different from the map\n"
-    "  patches:                          soft patches in every world, not in the class raster\n"
-    "    - {x_m: 40, y_m: 25, radius_m: 4, soil: mars_drift}\n"
-    "  random:                           variation between worlds\n"
-    "    spread: 0.1                     relative std of cohesion, tan(friction) and moduli\n"
-    "    as_believed: true               departures of the ground as the map believes (mean and places)\n"
-    "    patches: 8                      number of random patches, away from start and goal\n"
-    "    patch_radius_m: 3               mean patch radius; each varies by +-50 %\n"
-    "    patch_soil: mars_drift\n"
-    "  effects:                          effects on all soils, unknown to the planner\n"
-    "    - {name: slip_sinkage_ding, parameters: [0.4]}\n"
-    "  second_slip: true                 the rover measures rim speed and odometry, too\n"
-    "  soils:                            soils defined in this file\n"
-    "    - {name: SOIL, cohesion_kPa: 0.2, friction_angle_deg: 24, ...}\n"
-    "SOIL: a name in the library or in `soils:`, a YAML file, or the fields of a soil in braces.\n";
 
 namespace {
 

@@ -96,11 +96,6 @@ void bindPlan(CLI::App& command, PlanOptions& options);
 /// Checks that positions and options of a call are consistent with each other. @throws InputError otherwise
 void requirePlaces(const PlanOptions& options);
 
-/// Return the keys of a mission file, of its mapping `maps` and of its mapping `thresholds`.
-std::span<const terramech::FileKey> missionKeys();
-std::span<const terramech::FileKey> missionMapKeys();
-std::span<const terramech::FileKey> thresholdKeys();
-
 /// Returns true if the extension of the path is that of a mission file, .yaml or .yml.
 bool isMission(const std::string& path);
 
@@ -113,9 +108,6 @@ void readMission(PlanOptions& options);
 /// Returns the text of a mission file with all keys that the reader accepts. Keys of the file and of its mapping `maps`
 /// have the values given here; the others, and those with an empty text, are comments with their meaning.
 std::string missionText(const std::map<std::string, nlohmann::json>& values);
-
-/// Description of the format of TRUTH.yaml (true soils of a simulation) for the help.
-extern const char* const kTruthFormat;
 
 /// Returns the content of a truth file. Throws InputError with file, line and field.
 planner::Truth readTruth(const std::string& path);

@@ -110,8 +110,7 @@ ordered_json asJson(const std::vector<planner::WorldResult>& results) {
   ordered_json out{{"worlds", rates.worlds}};
   addRates(out, rates);
   out["mean_energy_J_where_reached"] = rates.energy_J;
-  out["each"] = ordered_json::array();
-  for (const planner::WorldResult& r : results) out["each"].push_back(asJson(r));
+  out["each"] = jsonList(results, [](const planner::WorldResult& r) { return asJson(r); });
   return out;
 }
 

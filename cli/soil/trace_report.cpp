@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
@@ -267,17 +269,16 @@ std::string leftOutText(const std::vector<LeftOutErrors>& all) {
 }
 
 nlohmann::ordered_json leftOutJson(const std::vector<LeftOutErrors>& all) {
-  auto out = nlohmann::ordered_json::array();
-  for (const LeftOutErrors& part : all)
-    out.push_back({{"left_out", part.what},
-                   {"rows", part.rows},
-                   {"effects", part.effects},
-                   {"base_rmse", errorsJson(part.base)},
-                   {"refined_rmse", errorsJson(part.refined)},
-                   {"worse_than_base", worse(part)},
-                   {"noise_floor", errorsJson(part.floor)},
-                   {"regression_rmse", errorsJson(part.regression)}});
-  return out;
+  return jsonList(all, [](const LeftOutErrors& part) -> nlohmann::ordered_json {
+    return {{"left_out", part.what},
+            {"rows", part.rows},
+            {"effects", part.effects},
+            {"base_rmse", errorsJson(part.base)},
+            {"refined_rmse", errorsJson(part.refined)},
+            {"worse_than_base", worse(part)},
+            {"noise_floor", errorsJson(part.floor)},
+            {"regression_rmse", errorsJson(part.regression)}};
+  });
 }
 
 namespace {
@@ -344,10 +345,9 @@ ordered_json proposalsJson(const std::vector<ProposedRun>& runs) {
 }
 
 ordered_json scoresJson(const std::vector<CauseScore>& scores) {
-  ordered_json all = ordered_json::array();
-  for (const CauseScore& s : scores)
-    all.push_back({{"cause", s.cause}, {"log_likelihood", s.log_likelihood}, {"probability", s.probability}});
-  return all;
+  return jsonList(scores, [](const CauseScore& s) -> ordered_json {
+    return {{"cause", s.cause}, {"log_likelihood", s.log_likelihood}, {"probability", s.probability}};
+  });
 }
 
 std::string proposalText(const std::vector<ProposedRun>& runs, const Trial& trial) {
@@ -418,11 +418,9 @@ ordered_json rivalJson(const Explanation& e) {
 }
 
 ordered_json evidenceJson(const TableTrace& trace, const TracedEffect& effect) {
-  ordered_json rivals = ordered_json::array();
-  for (const Explanation& e : effect.equal) rivals.push_back(rivalJson(e));
   return {{"log_likelihood_gain", 0.5 * effect.chosen.chi2_gain},
           {"gain", effect.chosen.gain},
-          {"alternatives", rivals},
+          {"alternatives", jsonList(effect.equal, rivalJson)},
           {"confounded_with", confounded(trace.result.trial, effect.chosen.candidate.covariate())},
           {"to_tell_apart", separatingMeasurement(trace.result.trial, effect)}};
 }
@@ -440,10 +438,9 @@ ordered_json effectJson(const TableTrace& trace, const TracedEffect& effect, con
   out["adds"] = role.adds;
   out["takes_back"] = role.takes_back;
   out["p_value"] = effect.p_value;
-  out["equal_to"] = ordered_json::array();
-  for (const Explanation& e : effect.equal)
-    out["equal_to"].push_back(
-        {{"name", e.candidate.parts.front().name}, {"covariate", e.candidate.covariate()}});
+  out["equal_to"] = jsonList(effect.equal, [](const Explanation& e) -> ordered_json {
+    return {{"name", e.candidate.parts.front().name}, {"covariate", e.candidate.covariate()}};
+  });
   out["evidence"] = evidenceJson(trace, effect);
   if (const EffectForm* form = findEffect(part.name)) {
     out["formula"] = form->formula;
@@ -456,13 +453,11 @@ ordered_json effectJson(const TableTrace& trace, const TracedEffect& effect, con
 }
 
 ordered_json rejectedJson(const TraceResult& result) {
-  ordered_json out = ordered_json::array();
-  for (const Explanation& e : result.rejected) {
+  return jsonList(result.rejected, [&](const Explanation& e) {
     ordered_json one = rivalJson(e);
     one["reason"] = refusal(result, e);
-    out.push_back(one);
-  }
-  return out;
+    return one;
+  });
 }
 
 double correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
@@ -582,18 +577,15 @@ ordered_json schemeJson(const HeldOut& held) {
 ordered_json heldOutJson(const TableTrace& trace) {
   ordered_json out = schemeJson(trace.held_out.front());
   out["noise_floor"] = errorsJson(trace.result.noise_floor);
-  ordered_json others = ordered_json::array();
-  for (std::size_t k = 1; k < trace.held_out.size(); ++k) others.push_back(schemeJson(trace.held_out[k]));
-  out["others"] = others;
-  ordered_json ends = ordered_json::array();
-  for (const EndLevel& end : trace.result.ends)
-    ends.push_back({{"column", end.column},
-                    {"end", end.high ? "high" : "low"},
-                    {"rows", end.rows},
-                    {"distance", end.distance},
-                    {"base_rmse", errorsJson(end.base_rmse)},
-                    {"refined_rmse", errorsJson(end.refined_rmse)}});
-  out["end_levels"] = ends;
+  out["others"] = jsonList(std::span(trace.held_out).subspan(1), schemeJson);
+  out["end_levels"] = jsonList(trace.result.ends, [](const EndLevel& end) -> ordered_json {
+    return {{"column", end.column},
+            {"end", end.high ? "high" : "low"},
+            {"rows", end.rows},
+            {"distance", end.distance},
+            {"base_rmse", errorsJson(end.base_rmse)},
+            {"refined_rmse", errorsJson(end.refined_rmse)}};
+  });
   return out;
 }
 
@@ -612,16 +604,16 @@ void addEnds(Report& report, const TraceResult& r) {
 }
 
 ordered_json answerJson(const TraceResult& result, const Answer& a) {
-  ordered_json moved = ordered_json::array();
-  for (const MovedParameter& p : movedSoil(result))
-    moved.push_back({{"name", p.name},
-                     {"value", p.value},
-                     {"prior", p.prior},
-                     {"prior_std", p.prior_std},
-                     {"standard_deviations", p.away()}});
-  ordered_json strained = ordered_json::array();
-  for (const StrainedSensor& s : a.strained)
-    strained.push_back({{"column", s.column}, {"declared", s.declared}, {"fitted", s.fitted}});
+  const auto moved = jsonList(movedSoil(result), [](const MovedParameter& p) -> ordered_json {
+    return {{"name", p.name},
+            {"value", p.value},
+            {"prior", p.prior},
+            {"prior_std", p.prior_std},
+            {"standard_deviations", p.away()}};
+  });
+  const auto strained = jsonList(a.strained, [](const StrainedSensor& s) -> ordered_json {
+    return {{"column", s.column}, {"declared", s.declared}, {"fitted", s.fitted}};
+  });
   return {{"channel", name(a.channel)},
           {"base_rmse", a.base},
           {"rmse", a.rest},
@@ -651,16 +643,14 @@ ordered_json traceJson(const TableTrace& trace) {
   ordered_json effects = ordered_json::array();
   const std::vector<EffectRole> roles = rolesOf(r);
   for (std::size_t k = 0; k < roles.size(); ++k) effects.push_back(effectJson(trace, r.effects[k], roles[k]));
-  ordered_json tests = ordered_json::array();
-  for (std::size_t k = 0; k < r.first_promises.size() && k < 12; ++k) {
-    const Promise& p = r.first_promises[k];
-    const Effect& front = p.candidate.parts.front();
-    tests.push_back({{"what", front.name},
-                     {"covariate", p.candidate.covariate()},
-                     {"channel", name(front.channel)},
-                     {"gain", p.gain},
-                     {"p_value", p.p_value}});
-  }
+  const auto first = std::span(r.first_promises).first(std::min<std::size_t>(12, r.first_promises.size()));
+  const auto tests = jsonList(first, [](const Promise& p) -> ordered_json {
+    return {{"what", p.candidate.parts.front().name},
+            {"covariate", p.candidate.covariate()},
+            {"channel", name(p.candidate.parts.front().channel)},
+            {"gain", p.gain},
+            {"p_value", p.p_value}};
+  });
   return {{"verdict", name(trace.answer.verdict)},
           {"answer", answerJson(r, trace.answer)},
           {"base", {{"rmse", errorsJson(r.base_rmse)}}},

@@ -437,7 +437,10 @@ Report benchReport(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
     page.heading("Simulated drives over the true slip");
     page.table(drives);
   }
-  page.charts({first, plots.end()});
+  page.charts({first, plots.end()},
+              "The curves are those of the first seed of each planner whose final route passes the check. "
+              "Intermediate costs are those that the planner reports; none is drawn below the cost of the "
+              "final route.");
   page.paragraph(fmt::format(
       "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
       "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
@@ -445,10 +448,6 @@ Report benchReport(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
       "with the field's "
       "route, those with :cold with nothing.",
       plan.cases.size(), plan.seeds, plan.time_limit_s));
-  page.paragraph(
-      "The curves are those of the first seed of each planner whose final route passes the check. "
-      "Intermediate costs are those that "
-      "the planner reports; none is drawn below the cost of the final route.");
   return page;
 }
 
