@@ -53,52 +53,22 @@ void requireJoinedRanks(int joined, const std::string& reason) {
                   launch->ranks, launch->variable, reason));
 }
 
-JobOutcome outcomeOf(const std::function<std::string(std::size_t)>& job, std::size_t i,
-                     const ProgressMonitor& watch) {
-  const JobOutcome stopped{.failed = true, .stopped = true, .text = "cancelled"};
-  if (watch.stopped()) return stopped;
-  try {
-    JobOutcome made{.text = job(i)};
-    return made.text.empty() && watch.stopped() ? stopped : made;
-  } catch (const std::exception& error) {
-    return {.failed = true, .text = error.what()};
-  }
-}
+/// Part of a list of jobs: the jobs k with k modulo `parts` = `index`.
+struct Part {
+  std::size_t index = 0, parts = 1;
+};
 
-// Each job writes its own element of the result, so that the order of the jobs does not matter. Only the
-// caller's thread reports progress.
-std::vector<JobOutcome> runHere(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                                const ProgressMonitor& watch, std::size_t workers) {
-  std::vector<JobOutcome> outcomes(count);
-  std::atomic<std::size_t> done{0};
-  const auto caller = std::this_thread::get_id();
-  parallelFor(count, static_cast<int>(workers), [&](std::size_t i) {
-    outcomes[i] = outcomeOf(job, i, watch);
-    ++done;
-    if (std::this_thread::get_id() == caller)
-      watch.report(static_cast<double>(done) / static_cast<double>(count));
-  });
-  return outcomes;
-}
-
-}  // namespace
-
-Part::Part(const std::string& text) {
-  stated_ = !text.empty();
-  if (!stated_) return;
+// The part that a text K/N names.
+Part partOf(const std::string& text) {
+  if (text.empty()) return {};
   int index = 0, parts = 0, end = 0;
   if (std::sscanf(text.c_str(), "%5d/%5d%n", &index, &parts, &end) != 2 ||
       end != static_cast<int>(text.size()) || index < 1 || index > parts || parts > 10000)
     throw InputError({"--part " + text, "is not K/N with K from 1 to N", "write --part 1/4"});
-  index_ = static_cast<std::size_t>(index - 1);
-  parts_ = static_cast<std::size_t>(parts);
+  return {static_cast<std::size_t>(index - 1), static_cast<std::size_t>(parts)};
 }
 
-std::vector<std::size_t> Part::of(std::size_t count) const {
-  std::vector<std::size_t> jobs;
-  for (std::size_t i = index_; i < count; i += parts_) jobs.push_back(i);
-  return jobs;
-}
+}  // namespace
 
 bool makeFolder(const std::string& folder) {
   std::error_code error;
@@ -111,9 +81,9 @@ bool makeFolder(const std::string& folder) {
 
 namespace {
 
-// A row of a part: job, checksum over `hash`, job and result, and the result in hexadecimal digits.
-std::string rowOf(std::size_t job, const std::string& hash, const std::string& text) {
-  const std::string whole = fmt::format("{} {} {}", hash, job, text);
+// A row of a part: job, checksum over identity, job and result, and the result in hexadecimal digits.
+std::string rowOf(std::size_t job, const std::string& identity, const std::string& text) {
+  const std::string whole = fmt::format("{} {} {}", identity, job, text);
   Checksum sum;
   sum.add(whole.data(), whole.size());
   std::string row = fmt::format("{},{:016x},", job, sum.value());
@@ -121,11 +91,10 @@ std::string rowOf(std::size_t job, const std::string& hash, const std::string& t
   return row;
 }
 
-}  // namespace
-
-JobResults Part::joined(const std::string& folder, const std::string& hash, const JobResults& own) const {
+// The results of all parts in the folder of the jobs and of this part (`own`), which is written to its file there.
+JobResults joined(const JobList& jobs, const Part& part, const JobResults& own) {
   JobResults results = own;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(jobs.folder)) {
     if (!entry.path().filename().string().starts_with("part_")) continue;
     terramech::CsvReader reader(entry.path().string());
     for (terramech::CsvRow row; reader.next(row);) {
@@ -136,7 +105,7 @@ JobResults Part::joined(const std::string& folder, const std::string& hash, cons
           text += static_cast<char>(std::strtol(row.fields[2].substr(i, 2).c_str(), nullptr, 16));
       const bool counts = job >= 0.0 && job < 1e9;
       const std::size_t index = counts ? static_cast<std::size_t>(job) : 0;
-      if (!counts || rowOf(index, hash, text) != fmt::format("{}", fmt::join(row.fields, ",")))
+      if (!counts || rowOf(index, jobs.identity, text) != fmt::format("{}", fmt::join(row.fields, ",")))
         throw InputError({fmt::format("{}:{}", entry.path().string(), row.line),
                           "is not of these jobs and their options, or damaged",
                           "name another folder with -o, or remove the file"});
@@ -144,39 +113,60 @@ JobResults Part::joined(const std::string& folder, const std::string& hash, cons
     }
   }
   std::string rows = "job,checksum,result\n";
-  for (const auto& [job, text] : own) rows += rowOf(job, hash, text) + "\n";
-  writeFile(std::filesystem::path(folder) / fmt::format("part_{}_of_{}.csv", index_ + 1, parts_), rows);
+  for (const auto& [job, text] : own) rows += rowOf(job, jobs.identity, text) + "\n";
+  writeFile(std::filesystem::path(jobs.folder) / fmt::format("part_{}_of_{}.csv", part.index + 1, part.parts),
+            rows);
   return results;
 }
 
-std::optional<JobResults> Part::completed(const std::string& folder, const std::string& hash,
-                                          const JobResults& own, std::size_t all, const char* what) const {
-  if (!stated_) return own;
-  JobResults results = joined(folder, hash, own);
-  if (results.size() == all) return results;
-  print(fmt::format("part {}/{}: {} of {} {} are in {}\n", index_ + 1, parts_, results.size(), all, what,
-                    folder));
+}  // namespace
+
+// The outcome of a job, which a rank sends as one message.
+struct Campaign::Outcome {
+  std::size_t job = 0;
+  bool stopped = false;  // true if a stop was requested before the job had a result
+  std::string text;      // result of the job, or reason of its failure
+
+  static Outcome of(const std::function<std::string(std::size_t)>& job, std::size_t i,
+                    const ProgressMonitor& watch) {
+    if (watch.stopped()) return {i, true, {}};
+    try {
+      const std::string text = job(i);
+      return {i, text.empty() && watch.stopped(), text};
+    } catch (const std::exception& error) {
+      return {i, false, error.what()};
+    }
+  }
+
+  template <typename Archive>
+  void serialize(Archive& archive, unsigned) {
+    archive& job& stopped& text;
+  }
+};
+
+std::optional<JobResults> Campaign::results(const JobList& jobs,
+                                            const std::function<std::string(std::size_t)>& job,
+                                            const ProgressMonitor& watch) const {
+  const Part part = partOf(jobs.part);
+  const bool joins = !jobs.part.empty() && !jobs.folder.empty();
+  if (joins && leads()) makeFolder(jobs.folder);
+  std::vector<std::size_t> own;
+  for (std::size_t k = part.index; k < jobs.count; k += part.parts) own.push_back(k);
+  const auto outcomes = run(
+      own.size(), [&](std::size_t i) { return job(own[i]); }, watch, jobs.workers);
+  if (!leads()) return std::nullopt;
+  JobResults results;
+  for (const Outcome& one : outcomes)
+    if (!one.stopped) results[own[one.job]] = one.text;
+  if (!joins || watch.stopped()) return results;
+  results = joined(jobs, part, results);
+  if (results.size() == jobs.count) return results;
+  print(fmt::format("part {}: {} of {} {} are in {}\n", jobs.part, results.size(), jobs.count, jobs.what,
+                    jobs.folder));
   return std::nullopt;
 }
 
 #ifdef TALUS_MPI
-
-namespace {
-
-constexpr int kTag = 1;
-
-// The outcome of a job as one message.
-struct Answer {
-  std::size_t job = 0;
-  JobOutcome outcome;
-
-  template <typename Archive>
-  void serialize(Archive& archive, unsigned) {
-    archive& job& outcome.failed& outcome.stopped& outcome.text;
-  }
-};
-
-}  // namespace
 
 struct Campaign::Ranks {
   boost::mpi::environment environment;
@@ -202,23 +192,23 @@ bool Campaign::leads() const noexcept {
 
 // Rank 0 runs its own jobs and receives the outcomes of other ranks between them, then the remaining
 // outcomes.
-std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                                      const ProgressMonitor& watch, std::size_t workers) const {
-  if (!mpi_) return runHere(count, job, watch, workers);
+std::vector<Campaign::Outcome> Campaign::runRanks(std::size_t count,
+                                                  const std::function<std::string(std::size_t)>& job,
+                                                  const ProgressMonitor& watch) const {
+  constexpr int kTag = 1;
   const boost::mpi::communicator& world = mpi_->world;
-  std::vector<JobOutcome> outcomes(leads() ? count : 0);
-  std::size_t done = 0;
-  const auto keep = [&](Answer answer) {
-    outcomes[answer.job] = std::move(answer.outcome);
-    watch.report(static_cast<double>(++done) / static_cast<double>(count));
+  std::vector<Outcome> outcomes;
+  const auto keep = [&](Outcome outcome) {
+    outcomes.push_back(std::move(outcome));
+    watch.report(static_cast<double>(outcomes.size()) / static_cast<double>(count));
   };
   const auto receive = [&] {
-    Answer answer;
-    world.recv(boost::mpi::any_source, kTag, answer);
-    keep(std::move(answer));
+    Outcome outcome;
+    world.recv(boost::mpi::any_source, kTag, outcome);
+    keep(std::move(outcome));
   };
   for (auto i = static_cast<std::size_t>(world.rank()); i < count; i += static_cast<std::size_t>(ranks())) {
-    Answer own{i, outcomeOf(job, i, watch)};
+    Outcome own = Outcome::of(job, i, watch);
     if (!leads()) {
       world.send(0, kTag, own);
       continue;
@@ -226,7 +216,7 @@ std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std
     while (world.iprobe(boost::mpi::any_source, kTag)) receive();
     keep(std::move(own));
   }
-  while (leads() && done < count) receive();
+  while (leads() && outcomes.size() < count) receive();
   return outcomes;
 }
 
@@ -242,14 +232,32 @@ bool Campaign::leads() const noexcept {
   return true;
 }
 
-std::vector<JobOutcome> Campaign::run(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                                      const ProgressMonitor& watch, std::size_t workers) const {
-  return runHere(count, job, watch, workers);
+std::vector<Campaign::Outcome> Campaign::runRanks(std::size_t, const std::function<std::string(std::size_t)>&,
+                                                  const ProgressMonitor&) const {
+  return {};
 }
 
 #endif
 
 Campaign::~Campaign() = default;
+
+// In one process, each job writes its own element of the result, so that the order of the jobs does not matter. Only the
+// caller's thread reports progress.
+std::vector<Campaign::Outcome> Campaign::run(std::size_t count,
+                                             const std::function<std::string(std::size_t)>& job,
+                                             const ProgressMonitor& watch, std::size_t workers) const {
+  if (mpi_) return runRanks(count, job, watch);
+  std::vector<Outcome> outcomes(count);
+  std::atomic<std::size_t> done{0};
+  const auto caller = std::this_thread::get_id();
+  parallelFor(count, static_cast<int>(workers), [&](std::size_t i) {
+    outcomes[i] = Outcome::of(job, i, watch);
+    ++done;
+    if (std::this_thread::get_id() == caller)
+      watch.report(static_cast<double>(done) / static_cast<double>(count));
+  });
+  return outcomes;
+}
 
 void requireMpiForRanks() {
 #ifndef TALUS_MPI

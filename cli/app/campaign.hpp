@@ -12,35 +12,17 @@
 
 namespace talus::cli {
 
-/// Result of one job.
-struct JobOutcome {
-  bool failed = false;
-  bool stopped = false;  ///< true if the job failed because a stop was requested before the job had a result
-  std::string text;      ///< result of the job, or reason of its failure
-};
-
 /// Results by job; a missing job is of another part, or was stopped.
 using JobResults = std::map<std::size_t, std::string>;
 
-/// Part K of N of a list of jobs, for array jobs of a queue: the jobs k with k modulo N = K - 1.
-class Part {
- public:
-  /// Reads "K/N" with 1 <= K <= N <= 10000; empty: the whole list. @throws InputError
-  explicit Part(const std::string& text);
-  /// Returns the indices of the part's jobs of `count`.
-  std::vector<std::size_t> of(std::size_t count) const;
-  /// Returns the results of all parts in a folder and of this part (`own`), which is written to its file there. Each row
-  /// has a checksum over `hash` (of the jobs and their inputs), job and result. Throws InputError, and writes
-  /// nothing, for a row that is of other jobs or damaged.
-  JobResults joined(const std::string& folder, const std::string& hash, const JobResults& own) const;
-  /// Returns the result of joined(), or `own` for the whole list. Prints how many of `all` jobs, which are called `what`,
-  /// are in the folder, and returns nullopt, while some are missing there.
-  std::optional<JobResults> completed(const std::string& folder, const std::string& hash,
-                                      const JobResults& own, std::size_t all, const char* what) const;
-
- private:
-  bool stated_ = false;
-  std::size_t index_ = 0, parts_ = 1;
+/// Independent jobs, all of them or a part for an array job of a queue.
+struct JobList {
+  std::size_t count = 0;
+  std::string part{};       ///< "K/N", 1 <= K <= N <= 10000: the jobs k with k modulo N = K - 1; empty: all
+  std::string folder{};     ///< folder in which the parts keep and find their results; empty: none
+  std::string identity{};   ///< text of the jobs and their inputs: results of another text are refused
+  std::string what{};       ///< name of the jobs in messages, in plural
+  std::size_t workers = 1;  ///< number of jobs that run concurrently without MPI
 };
 
 /// Creates a folder for results before the jobs run, so that an unusable path is reported immediately. Returns true if
@@ -63,16 +45,24 @@ class Campaign {
   int ranks() const noexcept;
   bool leads() const noexcept;  ///< true on rank 0, the only rank that receives results and prints
 
-  /// Returns on rank 0 the outcomes of job(0) .. job(count - 1) in order, and an empty vector on other ranks.
-  /// A job that throws is marked as failed; the other jobs continue. After a stop request, each rank
-  /// completes its current job; jobs not started, and jobs that return an empty text, are marked as failed
-  /// and stopped. Without MPI, `workers` jobs run concurrently and must be thread-safe. With MPI, a rank runs
-  /// one job at a time.
-  std::vector<JobOutcome> run(std::size_t count, const std::function<std::string(std::size_t)>& job,
-                              const ProgressMonitor& watch = {}, std::size_t workers = 1) const;
+  /// Runs the jobs of the part and returns their results on rank 0; the result of a job that throws is its reason. After a
+  /// stop request, each rank completes its current job; jobs not started, and jobs that return an empty text, have no
+  /// result. Without MPI, `workers` jobs run concurrently and must be thread-safe; with MPI, a rank runs one at a time.
+  /// With a folder, writes the results of the part to it, each with a checksum over the identity, and returns those of
+  /// all parts, or prints how many there are and returns nullopt while some are missing. Other ranks return nullopt.
+  /// Throws InputError, and writes nothing, for a result in the folder that is of other jobs or damaged.
+  std::optional<JobResults> results(const JobList& jobs, const std::function<std::string(std::size_t)>& job,
+                                    const ProgressMonitor& watch) const;
 
  private:
+  struct Outcome;
   struct Ranks;
+
+  std::vector<Outcome> run(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                           const ProgressMonitor& watch, std::size_t workers) const;
+  std::vector<Outcome> runRanks(std::size_t count, const std::function<std::string(std::size_t)>& job,
+                                const ProgressMonitor& watch) const;
+
   std::unique_ptr<Ranks> mpi_;  // null in a plain run
 };
 

@@ -4,7 +4,11 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/options.hpp>
 #include <talus/cli/app/output_file.hpp>
@@ -12,28 +16,10 @@
 
 namespace talus::cli {
 
-/// Headings of the groups of subcommands in `talus --help`.
-struct Group {
-  static constexpr const char* kRoutes = "Routes";
-  static constexpr const char* kMaps = "Maps";
-  static constexpr const char* kSoil = "Wheels and soil";
-  static constexpr const char* kHelp = "Help";
-};
-
-/// The text of a subcommand in --help.
-struct CommandText {
-  std::string name;
-  std::string group;        ///< heading, one of Group
-  std::string description;  ///< purpose in one line
-  std::string examples;     ///< at least two example calls, each on lines indented by two blanks
-};
-
 template <typename Options, typename Run>
-CLI::App& registerCommand(CLI::App& app, Context& context, const CommandText& text,
+CLI::App& registerCommand(CLI::App& app, Context& context, const char* name,
                           void (*bind)(CLI::App&, Options&), Run run) {
-  CLI::App& command = *app.add_subcommand(text.name, text.description)->group(text.group);
-  command.set_help_flag("-h,--help", "print this help; `talus --help` lists the options of all calls");
-  command.footer("Examples:\n" + text.examples);
+  CLI::App& command = addSubcommand(app, name);
   auto options = std::make_shared<Options>();
   bind(command, *options);
   command.callback([options, run, &command, &context] {
@@ -45,18 +31,18 @@ CLI::App& registerCommand(CLI::App& app, Context& context, const CommandText& te
   return command;
 }
 
-/// Registers a subcommand. `bind` declares the options of the subcommand as fields of a plain struct.
+/// Registers the subcommand `name`. `bind` declares the options of the subcommand as fields of a plain struct.
 /// `run(options, context)` receives the parsed struct and returns the exit code of the program. main() prints exceptions.
 template <typename Options>
-CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
-                     void (*bind)(CLI::App&, Options&), int (*run)(const Options&, Context&)) {
-  return registerCommand(app, context, text, bind, run);
+CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*bind)(CLI::App&, Options&),
+                     int (*run)(const Options&, Context&)) {
+  return registerCommand(app, context, name, bind, run);
 }
 /// The same for a command that a mission completes.
 template <typename Options>
-CLI::App& addCommand(CLI::App& app, Context& context, const CommandText& text,
-                     void (*bind)(CLI::App&, Options&), int (*run)(Options&, Context&)) {
-  return registerCommand(app, context, text, bind, run);
+CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*bind)(CLI::App&, Options&),
+                     int (*run)(Options&, Context&)) {
+  return registerCommand(app, context, name, bind, run);
 }
 
 }  // namespace talus::cli

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <talus/common/common.hpp>
 
@@ -125,6 +125,14 @@ struct Context {
   /// Prints a result: the JSON if `json` is set, otherwise the text.
   void answer(const nlohmann::ordered_json& result, std::string_view text) const;
 };
+
+/// Returns the JSON array of of(element) for the elements of a range.
+template <typename Range, typename Of>
+nlohmann::ordered_json jsonList(const Range& range, Of of) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& element : range) list.push_back(of(element));
+  return list;
+}
 
 /// Returns JSON as text, indented by `indent` blanks, or on one line if `indent` is negative. NaN and
 /// infinity become null; each byte that is not valid UTF-8 (possible in file names) becomes U+FFFD.

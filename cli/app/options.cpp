@@ -6,10 +6,13 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <talus/cli/app/options.hpp>
+#include <talus/cli/app/texts.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/limits.hpp>
 
@@ -100,14 +103,17 @@ void checkNumbers(const CLI::App& command) {
   }
 }
 
-CLI::Validator within(double low, double high) {
-  const auto check = [low, high](const std::string& text) -> std::string {
+CLI::Validator numberThat(std::function<bool(double)> holds, const std::string& must) {
+  const auto check = [holds = std::move(holds), must](const std::string& text) -> std::string {
     double value = 0.0;
     const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-    if (number && value >= low && value <= high) return "";
-    return fmt::format("{}, must be {}", text, bound(low, high));
+    return number && holds(value) ? "" : text + ", must be " + must;
   };
   return CLI::Validator(check, "");
+}
+
+CLI::Validator within(double low, double high) {
+  return numberThat([low, high](double value) { return value >= low && value <= high; }, bound(low, high));
 }
 
 CLI::Validator notNegative() {
@@ -115,12 +121,7 @@ CLI::Validator notNegative() {
 }
 
 CLI::Validator positive() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0.0;
-    const bool number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-    return number && value > 0.0 ? "" : text + ", must be finite, > 0";
-  };
-  return CLI::Validator(check, "");
+  return numberThat([](double value) { return value > 0.0; }, "finite, > 0");
 }
 
 CLI::Validator finite() {
@@ -128,11 +129,8 @@ CLI::Validator finite() {
 }
 
 CLI::Validator heading() {
-  const auto check = [](const std::string& text) -> std::string {
-    if (within(-2 * std::numbers::pi, 2 * std::numbers::pi)(text).empty()) return "";
-    return text + ", must be an angle in radians, -2 pi to 2 pi; for degrees use the option with -deg";
-  };
-  return CLI::Validator(check, "");
+  return numberThat([](double rad) { return std::abs(rad) <= 2 * std::numbers::pi; },
+                    "an angle in radians, -2 pi to 2 pi; for degrees use the option with -deg");
 }
 
 namespace {
@@ -187,7 +185,11 @@ std::string remarks(const CLI::Option* option) {
   const auto colon = endOfTypeName(type);
   if (option->get_required()) add("required", " ");
   if (colon != std::string::npos) add("", checkText(type.substr(colon + 1)));
-  add("default: ", option->get_default_str());
+  // 0 and NaN mean that the option has no effect unless it is given, and the description may name the default.
+  const std::string value = option->get_default_str();
+  const bool shown = value != "0" && value != "nan" && value != "[]" &&
+                     option->get_description().find("default") == std::string::npos;
+  if (shown) add("default: ", value);
   add("not with ", namesOf(option->get_excludes()));
   add("needs ", namesOf(option->get_needs()));
   std::string text;
@@ -250,6 +252,18 @@ std::string HelpFormat::make_option(const CLI::Option* option, bool is_positiona
 
 std::string HelpFormat::make_subcommand(const CLI::App* command) const {
   return entry(command->get_display_name(true), command->get_description());
+}
+
+CLI::App& addSubcommand(CLI::App& app, const std::string& name) {
+  const YAML::Node text = texts()["calls"][name];
+  CLI::App& command = *app.add_subcommand(name, text["description"].as<std::string>());
+  command.group(text["group"].as<std::string>());
+  command.set_help_flag("-h,--help", "print this help; `talus --help` lists the options of all calls");
+  std::string footer = "Examples:\n";
+  for (const YAML::Node& example : text["examples"]) footer += "  " + example.as<std::string>() + "\n";
+  if (text["remarks"]) footer += "\n" + text["remarks"].as<std::string>();
+  command.footer(footer);
+  return command;
 }
 
 void groupOptions(CLI::App& command, const std::string& heading) {

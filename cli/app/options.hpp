@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,9 @@ CLI::Option* addOption(CLI::App& command, const std::string& name, T& value, con
   const std::size_t blank = name.find(' ');
   return command.add_option(name.substr(0, blank), value, text)->type_name(name.substr(blank + 1));
 }
+
+/// Returns a check that rejects values other than finite numbers for which `holds` is true; the reason ends in `must`.
+CLI::Validator numberThat(std::function<bool(double)> holds, const std::string& must);
 
 /// Returns a check that rejects numbers outside [low, high], infinities and NaN. With an infinite `high`, or
 /// both ends infinite, the numbers have no bound at that end.
@@ -60,6 +64,9 @@ class HelpFormat : public CLI::Formatter {
   std::string make_option(const CLI::Option* option, bool is_positional) const override;
   std::string make_subcommand(const CLI::App* command) const override;
 };
+
+/// Adds a subcommand with its texts in cli/app/texts.yaml: group, purpose, and examples with remarks as footer.
+CLI::App& addSubcommand(CLI::App& app, const std::string& name);
 
 /// Assigns the heading `heading` in --help to all options of the command that have no heading yet.
 void groupOptions(CLI::App& command, const std::string& heading);

@@ -2,13 +2,8 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/estimate/model_pull.hpp>
 
@@ -25,13 +20,11 @@ struct AssessCommand : AssessOptions {
 void bind(CLI::App& command, AssessCommand& options) {
   addOption(command, "table T.csv", options.table.path, "wheel telemetry, one row per wheel and moment")
       ->required();
-  addOption(command, "--slope RAD", options.slope_rad, "slope to climb")->capture_default_str();
-  addOption(command, "--slope-uncertainty RAD", options.margin_rad, "uncertainty of the slope, plus or minus")
-      ->capture_default_str();
-  command.add_option("--z-threshold", options.z_threshold, "z/r above which the category drops one level")
-      ->capture_default_str();
-  command.add_option("--z-critical", options.z_critical, "z/r above which the category is dangerous")
-      ->capture_default_str();
+  addOption(command, "--slope RAD", options.slope_rad, "slope to climb");
+  addOption(command, "--slope-uncertainty RAD", options.margin_rad,
+            "uncertainty of the slope, plus or minus");
+  command.add_option("--z-threshold", options.z_threshold, "z/r above which the category drops one level");
+  command.add_option("--z-critical", options.z_critical, "z/r above which the category is dangerous");
   groupOptions(command, "Category");
   auto* model = command.add_option(
       "--model", options.model,
@@ -41,20 +34,17 @@ void bind(CLI::App& command, AssessCommand& options) {
       .add_option("--formula", options.formula,
                   "formula of drawbar pull from W, T and z: thesis 3.6, 3.12, 3.21, or single-force (ours)")
       ->check(CLI::IsMember(pullFormulas()))
-      ->capture_default_str()
       ->excludes(model);
   command.add_flag("--extrapolate", options.extrapolate,
                    "also forecast the drawbar pull at the reference slip and its maximum over slip, from the "
                    "soil estimated on all rows or from the model");
   command
       .add_option("--reference-slip", options.reference_slip, "reference slip of --extrapolate (thesis 3.5)")
-      ->check(CLI::Range(0.01, 1.0))
-      ->capture_default_str();
+      ->check(CLI::Range(0.01, 1.0));
   addOption(command, "--rover NAME|FILE", options.rover,
             "rover that supplies wheel dimensions missing from the file");
   command.add_option("--noise", options.noise, "relative standard deviation of each reading")
-      ->check(CLI::Range(0.0, 0.5))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 0.5));
   groupOptions(command, "Drawbar pull");
   addTableOptions(command, options.columns);
 }
@@ -78,8 +68,7 @@ Json jsonOf(const PullForecast& f, double reference_slip) {
 }
 
 Json jsonOf(const std::vector<Assessment>& rows, double reference_slip) {
-  Json list = Json::array();
-  for (const Assessment& a : rows) {
+  return jsonList(rows, [&](const Assessment& a) {
     const Estimate slope = climbableSlope_rad(a.pull);
     Json row{{"row", a.line - 1},
              {"line", a.line},
@@ -94,9 +83,8 @@ Json jsonOf(const std::vector<Assessment>& rows, double reference_slip) {
              {"climbable_slope_rad", slope.value},
              {"climbable_slope_std_rad", slope.std}};
     if (a.forecast) row.update(jsonOf(*a.forecast, reference_slip));
-    list.push_back(row);
-  }
-  return list;
+    return row;
+  });
 }
 
 std::string textOf(const AssessOptions& options, const std::vector<Assessment>& rows) {
@@ -145,13 +133,7 @@ int run(const AssessCommand& asked, Context& context) {
 }  // namespace
 
 void addAssess(CLI::App& app, Context& context) {
-  addCommand<AssessCommand>(app, context,
-                            {.name = "assess",
-                             .group = Group::kSoil,
-                             .description = "compute the drawbar pull and the category of each telemetry row",
-                             .examples = "  talus assess drive.csv --slope 0.26 --slope-uncertainty 0.087\n"
-                                         "  talus assess drive.csv --model refined.yaml --extrapolate\n"},
-                            bind, run);
+  addCommand<AssessCommand>(app, context, "assess", bind, run);
 }
 
 }  // namespace talus::cli

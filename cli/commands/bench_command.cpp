@@ -1,21 +1,16 @@
 // talus bench SUITE: compares planners on the same problems.
 #include <algorithm>
 #include <ctime>
+#include <exception>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/chrono.h>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/options.hpp>
-#include <talus/cli/app/output_file.hpp>
-#include <talus/cli/ground/plan_options.hpp>
+#include <talus/cli/ground/mission.hpp>
 #include <talus/cli/study/bench_suite.hpp>
-#include <talus/common/checksum.hpp>
-#include <talus/common/common.hpp>
 #include <talus/planner/bench/benchmark.hpp>
 #include <talus/planner/sampling/sampling_planner.hpp>
 
@@ -31,12 +26,11 @@ struct BenchOptions {
 };
 
 void bind(CLI::App& command, BenchOptions& options) {
-  command
-      .add_option("suite", options.suite.names,
-                  "one or more of: generated (crater field, dunes, rocks), slip (uncertain slip; routes are "
-                  "driven over the true slip), grids (walls, known optimum), an elevation file, a MovingAI "
-                  ".scen beside its .map")
-      ->capture_default_str();
+  command.add_option(
+      "suite", options.suite.names,
+      "one or more of: generated (crater field, dunes, rocks), slip (uncertain slip; routes are "
+      "driven over the true slip), grids (walls, known optimum), an elevation file, a MovingAI "
+      ".scen beside its .map");
   command
       .add_option("--planners", options.planners,
                   "planners to compare, separated by commas (default: all). OMPL's begin with the field's "
@@ -45,29 +39,23 @@ void bind(CLI::App& command, BenchOptions& options) {
       ->delimiter(',');
   addOption(command, "--plugin FILE.so", options.plugins, "planner plugin to compare, too; may be repeated");
   command.add_option("--runs", options.runs, "runs per case and planner, each with its own seed")
-      ->check(positive())
-      ->capture_default_str();
-  addOption(command, "--time S", options.time_limit_s, "time limit of one run")
-      ->check(positive())
-      ->capture_default_str();
-  command.add_option("--pairs", options.suite.pairs, "start and goal pairs per map")
-      ->check(positive())
-      ->capture_default_str();
+      ->check(positive());
+  addOption(command, "--time S", options.time_limit_s, "time limit of one run")->check(positive());
+  command.add_option("--pairs", options.suite.pairs, "start and goal pairs per map")->check(positive());
   addOption(command, "--turning-radius METRES", options.suite.turning_radius_m,
             "minimum turning radius of planners with kinematics; 0: the rover turns in place (default: "
             "the rover's)")
       ->check(turningRadius());
   command.add_option("--side", options.suite.side_cells, "side of a generated site, in cells")
-      ->check(CLI::Range(32, 10000))
-      ->capture_default_str();
+      ->check(CLI::Range(32, 10000));
   addOption(command, "--part K/N", options.part,
             "run part K of N alone, and keep its results in the folder; the call that finds the last part "
             "there writes the comparison");
   groupOptions(command, "Cases and runs");
   addReadOptions(command, options.suite.ground.elevation);
   addGroundChoices(command, options.suite.ground);
-  addOption(command, "-o,--output FOLDER", options.folder, "folder for the OMPL logs, the table and the page")
-      ->capture_default_str();
+  addOption(command, "-o,--output FOLDER", options.folder,
+            "folder for the OMPL logs, the table and the page");
   groupOptions(command, "Output");
 }
 
@@ -84,54 +72,45 @@ void refuseTwice(const std::string& what, std::vector<std::string> names) {
   if (twice != names.end()) throw InputError({what + " " + *twice, "is named twice", "name it once"});
 }
 
-std::string benchText(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs) {
-  const std::size_t asked = planner::jobsOf(plan).size();
-  return (runs.size() < asked ? fmt::format("cancelled: {} of {} runs\n", runs.size(), asked) : "") +
-         asText(compared(plan, runs)) + asText(drivesOf(plan, runs)) +
-         "OMPL's planners begin with the field's route, those with :cold with nothing\n";
-}
-
 void write(const std::filesystem::path& folder, const planner::BenchmarkPlan& plan,
            const std::vector<planner::BenchmarkRun>& runs) {
   for (std::size_t c = 0; c < plan.cases.size(); ++c)
     if (std::ranges::any_of(runs, [c](const auto& run) { return run.case_index == c; }))
       writeFile(folder / (fileName(plan.cases[c].name) + ".log"), planner::benchmarkLog(plan, runs, c));
-  writeFile(folder / "table.txt", benchText(plan, runs));
-  writeFile(folder / "index.html", asPage(plan, runs));
+  const Report report = benchReport(plan, runs);
+  writeFile(folder / "table.txt", report.text());
+  writeFile(folder / "index.html", report.html());
 }
 
-std::vector<planner::BenchmarkRun> runsOf(const planner::BenchmarkPlan& plan, const JobResults& results) {
+// The runs of all parts, or the runs completed before a stop; nothing while parts are missing.
+std::optional<std::vector<planner::BenchmarkRun>> runsOf(const BenchOptions& options,
+                                                         const planner::BenchmarkPlan& plan,
+                                                         const Campaign& campaign, const Context& context) {
   const auto jobs = planner::jobsOf(plan);
-  std::vector<planner::BenchmarkRun> runs;
-  for (const auto& [job, text] : results) runs.push_back(planner::benchmarkRun(jobs[job], text));
-  return runs;
-}
-
-// Runs the jobs of a part. After a requested stop, only the results completed before are returned.
-JobResults resultsOf(const planner::BenchmarkPlan& plan, const Part& part, const Campaign& campaign,
-                     const Context& context) {
-  const auto jobs = planner::jobsOf(plan);
-  const std::vector<std::size_t> own = part.of(jobs.size());
-  context.answerStop();
-  const ProgressMonitor watch =
-      campaign.leads() ? context.watch("bench") : ProgressMonitor{.progress = {}, .stop = context.stop};
-  const auto outcomes = campaign.run(
-      own.size(), [&](std::size_t i) { return planner::runIsolated(plan, jobs[own[i]], watch); }, watch);
-  JobResults results;
-  for (std::size_t i = 0; i < outcomes.size(); ++i)
-    if (!outcomes[i].stopped) results[own[i]] = outcomes[i].failed ? std::string() : outcomes[i].text;
-  return results;
-}
-
-std::string hashOf(const planner::BenchmarkPlan& plan, const Context& context) {
-  std::string text = fmt::format("{} {} {}", plan.seeds, plan.time_limit_s, context.seed);
-  for (const std::string& planner : plan.planners) text += "\n" + planner;
+  std::string identity = fmt::format("{} {} {}", plan.seeds, plan.time_limit_s, context.seed);
+  for (const std::string& planner : plan.planners) identity += "\n" + planner;
   for (const auto& one : plan.cases)
-    text +=
+    identity +=
         fmt::format("\n{} {} {} {} {}", one.name, one.start.x_m, one.start.y_m, one.goal.x_m, one.goal.y_m);
-  Checksum sum;
-  sum.add(text.data(), text.size());
-  return fmt::format("{:016x}", sum.value());
+  context.answerStop();
+  const ProgressMonitor watch = context.watch("bench");
+  const auto run = [&](std::size_t k) {
+    try {
+      return planner::runIsolated(plan, jobs[k], watch);
+    } catch (const std::exception&) {
+      return std::string();  // a crash
+    }
+  };
+  const auto results = campaign.results({.count = jobs.size(),
+                                         .part = options.part,
+                                         .folder = options.folder,
+                                         .identity = identity,
+                                         .what = "runs"},
+                                        run, watch);
+  if (!results) return std::nullopt;
+  std::vector<planner::BenchmarkRun> runs;
+  for (const auto& [job, text] : *results) runs.push_back(planner::benchmarkRun(jobs[job], text));
+  return runs;
 }
 
 // Writes the results of completed runs and reports the cancellation on stderr, so that stdout contains either
@@ -169,35 +148,19 @@ int run(const BenchOptions& options, Context& context) {
   plan.seeds = options.runs;
   plan.time_limit_s = options.time_limit_s;
   plan.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(std::time(nullptr)));
-  const Part part(options.part);
-  JobResults results = resultsOf(plan, part, campaign, context);
-  if (!campaign.leads()) return context.stop.stop_requested() ? Exit::kCancelled : Exit::kDone;
-  if (!context.stop.stop_requested()) {
-    auto all =
-        part.completed(options.folder, hashOf(plan, context), results, planner::jobsOf(plan).size(), "runs");
-    if (!all) return Exit::kDone;
-    results = *std::move(all);
-  }
-  const auto runs = runsOf(plan, results);
+  const auto all = runsOf(options, plan, campaign, context);
+  if (!all) return context.stop.stop_requested() ? Exit::kCancelled : Exit::kDone;
+  const auto& runs = *all;
   if (runs.size() < planner::jobsOf(plan).size()) return cancelled(options, plan, runs, made, context);
   write(options.folder, plan, runs);
-  context.answer(asJson(compared(plan, runs), drivesOf(plan, runs)), benchText(plan, runs));
+  context.answer(asJson(compared(plan, runs), drivesOf(plan, runs)), benchReport(plan, runs).text());
   return Exit::kDone;
 }
 
 }  // namespace
 
 void addBench(CLI::App& app, Context& context) {
-  addCommand<BenchOptions>(
-      app, context,
-      {.name = "bench",
-       .group = Group::kRoutes,
-       .description = "compare planners on the same cases; write logs, a table and a page",
-       .examples = "  talus bench --planners field,RRTstar:cold --time 5\n"
-                   "  talus bench gale.tif --pairs 10 -o gale_bench\n"
-                   "  talus bench room.scen --planners field\n"
-                   "  talus bench generated slip grids maps/*.tif --pairs 4\n"},
-      bind, run);
+  addCommand<BenchOptions>(app, context, "bench", bind, run);
 }
 
 }  // namespace talus::cli

@@ -2,15 +2,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
 
@@ -144,13 +139,7 @@ int run(const CheckOptions& options, Context& context) {
 }  // namespace
 
 void addCheck(CLI::App& app, Context& context) {
-  addCommand<CheckOptions>(
-      app, context,
-      {.name = "check",
-       .group = Group::kHelp,
-       .description = "run cases of a file: operation, input, expect, tolerance",
-       .examples = "  talus check examples/reference.yaml\n  talus check mine.yaml --json\n"},
-      bind, run);
+  addCommand<CheckOptions>(app, context, "check", bind, run);
 }
 
 }  // namespace talus::cli

@@ -1,16 +1,9 @@
 // talus costmap DEM -o MAP.ot: builds a traversability map and writes it to files.
-#include <string>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/file_formats.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
@@ -124,14 +117,7 @@ int run(CostmapOptions& options, Context& context) {
 }  // namespace
 
 void addCostmap(CLI::App& app, Context& context) {
-  addCommand<CostmapOptions>(
-      app, context,
-      {.name = "costmap",
-       .group = Group::kMaps,
-       .description = "build the traversability map: category, drawbar pull, energy per cell",
-       .examples = "  talus costmap gale.tif -o gale.ot --geotiff layers.tif\n"
-                   "  talus costmap dem.tif --terrain classes.tif --soils soils.yaml -o map.ot\n"},
-      bind, run);
+  addCommand<CostmapOptions>(app, context, "costmap", bind, run);
 }
 
 }  // namespace talus::cli

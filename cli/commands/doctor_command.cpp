@@ -1,17 +1,12 @@
 // talus doctor: capabilities of this installation and the values in use.
-#include <string>
 #include <utility>
 #include <vector>
 
 #include <cpl_string.h>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gdal.h>
-#include <nlohmann/json.hpp>
 #include <ogr_srs_api.h>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
 #include <talus/common/limits.hpp>
 #include <talus/maps/raster/gdal_dataset.hpp>
 #include <talus/planner/route/problem.hpp>
@@ -118,13 +113,7 @@ int run(const DoctorOptions& options, Context& context) {
 }  // namespace
 
 void addDoctor(CLI::App& app, Context& context) {
-  addCommand<DoctorOptions>(
-      app, context,
-      {.name = "doctor",
-       .group = Group::kHelp,
-       .description = "print the values in force, drivers, planners and what is missing",
-       .examples = "  talus doctor\n  talus doctor --json\n"},
-      bind, run);
+  addCommand<DoctorOptions>(app, context, "doctor", bind, run);
 }
 
 }  // namespace talus::cli

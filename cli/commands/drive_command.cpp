@@ -3,23 +3,13 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/cli/route/traverse_report.hpp>
-#include <talus/common/checksum.hpp>
-#include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/simulation/simulation.hpp>
 #include <talus/terramech/terramech_io.hpp>
@@ -56,15 +46,12 @@ std::string refusedBelief(const std::string& word) {
 void bindSensors(CLI::App& command, DriveCommandOptions& options) {
   const auto& faults = planner::sensorFaultNames();
   command.add_option("--fault", options.fault, "sensor fault during the whole traverse")
-      ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())))
-      ->capture_default_str();
+      ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())));
   addOption(command, "--pose-drift SHARE", options.sensors.pose_drift,
             "drift of the estimated pose per metre driven")
-      ->check(CLI::Range(0.0, planner::kMostPoseDrift))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, planner::kMostPoseDrift));
   command.add_option("--noise", options.noise, "noise and dropouts of slip, torque and sinkage")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->capture_default_str();
+      ->check(CLI::IsMember({"on", "off"}));
 }
 
 planner::SensorOptions sensorsOf(const DriveCommandOptions& options) {
@@ -90,8 +77,7 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
           "what the planner knows of the soil: geometry only, the prior (along-only: and slopes along the "
           "heading alone), the prior updated online by telemetry, or the true soil (perfect knowledge); "
           "`all` compares the five in the same worlds")
-      ->check(CLI::Validator(refusedBelief, "{geometry,along-only,prior,online,perfect-knowledge,all}"))
-      ->capture_default_str();
+      ->check(CLI::Validator(refusedBelief, "{geometry,along-only,prior,online,perfect-knowledge,all}"));
   auto* worlds = addOption(command, "--worlds N", options.worlds,
                            "number of random worlds; --threads run at a time, or one per rank under mpirun")
                      ->check(CLI::Range(1, 100000));
@@ -110,69 +96,44 @@ void bind(CLI::App& command, DriveCommandOptions& options) {
             "simulated wheel telemetry to write, for `talus update`")
       ->excludes(worlds);
   addOption(command, "-o,--output FOLDER", options.folder, "folder for the results of the parts")
-      ->capture_default_str()
       ->needs(part);
   groupOptions(command, "Output");
 }
 
-// Site and execution of a campaign of simulations.
-struct Campaigning {
-  const planner::SimulationSite& site;
-  const Campaign& campaign;
-  const Context& context;
-  std::string hash;  ///< of the call and of the files that it reads
-};
-
-std::string hashOf(const Ground& ground, const std::string& truth, const Context& context) {
-  std::string text = callText(context.argv);
-  for (const InputFile& file : ground.files) text += file.sha256;
-  text += sha256OfFile(truth);
-  Checksum sum;
-  sum.add(text.data(), text.size());
-  return fmt::format("{:016x}", sum.value());
-}
-
-// The worlds of all parts; empty while parts are missing.
-std::optional<SimulatedWorlds> simulated(const Campaigning& on, const std::vector<SoilKnowledge>& beliefs,
-                                         const DriveCommandOptions& options) {
-  const Part part(options.part);
-  if (!options.part.empty() && on.campaign.leads()) makeFolder(options.folder);
-  on.context.answerStop();
-  const ProgressMonitor watch = on.context.watch("simulating");
-  const ProgressMonitor inside{.progress = {}, .stop = watch.stop};
-  const WorldCount count{.beliefs = beliefs.size(),
-                         .worlds = options.worlds,
-                         .workers = static_cast<std::size_t>(on.context.workers())};
-  JobResults jobs = worldJobs(
-      count, [&](std::size_t b, std::size_t i) { return on.site.world(beliefs[b], i, inside); }, part,
-      on.campaign, watch);
-  if (on.campaign.leads() && !on.context.stop.stop_requested()) {
-    auto all = part.completed(options.folder, on.hash, jobs, count.beliefs * count.worlds, "simulations");
-    if (!all) return std::nullopt;
-    jobs = *std::move(all);
-  }
-  SimulatedWorlds driven = simulatedWorlds(count, jobs);
-  for (const auto& failure : driven.failures)
-    on.context.warn(fmt::format("world {} failed and is excluded: {}", failure.world, failure.reason));
-  return driven;
-}
-
-// Simulates many worlds under one belief or all of them; JSON includes the failed worlds.
-int runMany(const Campaigning& on, const DriveCommandOptions& options) {
+// Simulates many worlds under one belief or all of them; JSON includes the failed worlds. Without an answer while parts
+// are missing.
+int runMany(const planner::SimulationSite& site, const DriveCommandOptions& options, const Campaign& campaign,
+            const Ground& ground, const Context& context) {
   const bool all = options.belief == "all";
-  const auto driven = simulated(on,
-                                all ? std::vector<SoilKnowledge>(kBeliefs.begin(), kBeliefs.end())
-                                    : std::vector<SoilKnowledge>{*findBelief(options.belief)},
-                                options);
-  if (!driven || !on.campaign.leads()) return Exit::kDone;
-  if (on.context.stop.stop_requested()) return Exit::kCancelled;
-  BeliefResults beliefs;
-  std::copy(driven->results.begin(), driven->results.end(), beliefs.begin());
-  nlohmann::ordered_json json = all ? asJson(beliefs) : asJson(beliefs[0]);
-  json["failed"] = nlohmann::ordered_json::array();
-  for (const auto& failure : driven->failures)
-    json["failed"].push_back({{"world", failure.world}, {"reason", failure.reason}});
-  on.context.answer(json, all ? asText(beliefs) : asText(beliefs[0]));
+  const auto beliefs = all ? std::vector<SoilKnowledge>(kBeliefs.begin(), kBeliefs.end())
+                           : std::vector<SoilKnowledge>{*findBelief(options.belief)};
+  std::string identity = callText(context.argv) + sha256OfFile(options.truth);
+  for (const InputFile& file : ground.files) identity += file.sha256;
+  context.answerStop();
+  const ProgressMonitor watch = context.watch("simulating"), inside{.progress = {}, .stop = watch.stop};
+  const auto jobs = campaign.results(
+      {.count = beliefs.size() * options.worlds,
+       .part = options.part,
+       .folder = options.folder,
+       .identity = identity,
+       .what = "simulations",
+       .workers = static_cast<std::size_t>(context.workers())},
+      [&](std::size_t k) {
+        return jsonText(asJson(site.world(beliefs[k / options.worlds], k % options.worlds, inside)));
+      },
+      watch);
+  if (!jobs) return Exit::kDone;
+  const SimulatedWorlds driven = simulatedWorlds(beliefs.size(), options.worlds, *jobs);
+  for (const auto& failure : driven.failures)
+    context.warn(fmt::format("world {} failed and is excluded: {}", failure.world, failure.reason));
+  if (context.stop.stop_requested()) return Exit::kCancelled;
+  BeliefResults results;
+  std::copy(driven.results.begin(), driven.results.end(), results.begin());
+  nlohmann::ordered_json json = all ? asJson(results) : asJson(results[0]);
+  json["failed"] = jsonList(driven.failures, [](const auto& failure) -> nlohmann::ordered_json {
+    return {{"world", failure.world}, {"reason", failure.reason}};
+  });
+  context.answer(json, all ? asText(results) : asText(results[0]));
   return Exit::kDone;
 }
 
@@ -234,27 +195,14 @@ int run(DriveCommandOptions& options, Context& context) {
                    .seed = context.seed,
                    .sensors = sensorsOf(options),
                    .planner = plugin ? byPlugin : std::function<planner::Plan(const planner::Problem&)>()});
-  const Campaigning on{site, campaign, context, hashOf(ground, options.truth, context)};
-  if (options.belief == "all" || options.worlds > 1) return runMany(on, options);
+  if (options.belief == "all" || options.worlds > 1) return runMany(site, options, campaign, ground, context);
   return campaign.leads() ? runOne(site, options, context, ground) : Exit::kDone;
 }
 
 }  // namespace
 
 void addDrive(CLI::App& app, Context& context) {
-  addCommand<DriveCommandOptions>(
-      app, context,
-      {.name = "drive",
-       .group = Group::kRoutes,
-       .description = "simulate a traverse over soils that the planner does not know",
-       .examples =
-           std::string(
-               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --html drive.html\n"
-               "  talus drive dem.tif --truth truth.yaml --start 10,10 --goal 90,90 --worlds 100 --belief "
-               "all\n"
-               "\n") +
-           kTruthFormat},
-      bind, run);
+  addCommand<DriveCommandOptions>(app, context, "drive", bind, run);
 }
 
 }  // namespace talus::cli

@@ -2,16 +2,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/plot.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
@@ -56,8 +50,7 @@ void bind(CLI::App& command, EstimateCommand& options) {
             "plate width b where it is missing from the file (bevameter)")
       ->check(CLI::Range(1e-3, 10.0));
   command.add_option("--noise", options.noise, "relative standard deviation of each reading (wong-reece)")
-      ->check(CLI::Range(1e-4, 0.5))
-      ->capture_default_str();
+      ->check(CLI::Range(1e-4, 0.5));
   command.add_flag("--recursive", options.recursive,
                    "process the rows one by one in constant memory; print the estimate after each row");
   groupOptions(command, "Method");
@@ -67,16 +60,14 @@ void bind(CLI::App& command, EstimateCommand& options) {
 }
 
 Json runningJson(const SoilEstimate& e) {
-  Json rows = Json::array();
-  for (const RunningSoil& r : e.running) {
-    rows.push_back({{"line", r.line},
-                    {"cohesion_Pa", r.cohesion_Pa},
-                    {"cohesion_std_Pa", std::sqrt(r.covariance(0, 0))},
-                    {"friction_angle_rad", r.friction_angle_rad},
-                    {"friction_angle_std_rad", frictionStd_rad(r.covariance, r.friction_angle_rad)},
-                    {"shear_modulus_m", r.shear_modulus_m}});
-  }
-  return rows;
+  return jsonList(e.running, [](const RunningSoil& r) -> Json {
+    return {{"line", r.line},
+            {"cohesion_Pa", r.cohesion_Pa},
+            {"cohesion_std_Pa", std::sqrt(r.covariance(0, 0))},
+            {"friction_angle_rad", r.friction_angle_rad},
+            {"friction_angle_std_rad", frictionStd_rad(r.covariance, r.friction_angle_rad)},
+            {"shear_modulus_m", r.shear_modulus_m}};
+  });
 }
 
 Json soilsJson(const SoilEstimate& e) {
@@ -253,7 +244,7 @@ std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e
 
 void writePage(const EstimateCommand& options, const SoilEstimate& e,
                const std::vector<std::string>& warnings) {
-  HtmlReport page("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
+  Report page("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
   page.paragraph(
       fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
   page.table({{"quantity", "value", "standard deviation"},
@@ -302,15 +293,7 @@ int run(const EstimateCommand& asked, Context& context) {
 }  // namespace
 
 void addEstimate(CLI::App& app, Context& context) {
-  addCommand<EstimateCommand>(
-      app, context,
-      {.name = "estimate",
-       .group = Group::kSoil,
-       .description = "estimate soil parameters from wheel telemetry",
-       .examples = "  talus estimate drive.csv --method wong-reece --noise 0.03\n"
-                   "  talus estimate drive.csv --method linear-offset --shear-modulus 0.015\n"
-                   "  talus estimate drive.csv --method wong-reece --model refined.yaml\n"},
-      bind, run);
+  addCommand<EstimateCommand>(app, context, "estimate", bind, run);
 }
 
 }  // namespace talus::cli

@@ -1,16 +1,9 @@
 // talus explain DEM --at P [--heading RAD]: explains the category and cost of a cell.
 #include <cmath>
 #include <optional>
-#include <string>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/maps/maps_io.hpp>
 
@@ -40,13 +33,13 @@ void bind(CLI::App& command, ExplainOptions& options) {
 
 nlohmann::ordered_json explainJson(const costmap::Explanation& why, const maps::Point& point,
                                    const maps::Cell& cell) {
-  nlohmann::ordered_json causes = nlohmann::ordered_json::array();
-  for (const costmap::Cause& cause : why.causes)
-    causes.push_back({{"name", cause.name},
-                      {"value", cause.value},
-                      {"std", cause.std},
-                      {"source", cause.source},
-                      {"remark", cause.remark}});
+  const auto causes = jsonList(why.causes, [](const costmap::Cause& cause) -> nlohmann::ordered_json {
+    return {{"name", cause.name},
+            {"value", cause.value},
+            {"std", cause.std},
+            {"source", cause.source},
+            {"remark", cause.remark}};
+  });
   return {{"category", terramech::name(why.category)},
           {"probability", why.probability},
           {"verdict", why.verdict},
@@ -107,14 +100,7 @@ int run(ExplainOptions& options, Context& context) {
 }  // namespace
 
 void addExplain(CLI::App& app, Context& context) {
-  addCommand<ExplainOptions>(
-      app, context,
-      {.name = "explain",
-       .group = Group::kMaps,
-       .description = "explain the category of a cell: quantities, sources, uncertainties",
-       .examples = "  talus explain gale.tif --at -4.7d,137.5d --heading 1.57\n"
-                   "  talus explain map.ot --at 120,80 --next\n"},
-      bind, run);
+  addCommand<ExplainOptions>(app, context, "explain", bind, run);
 }
 
 }  // namespace talus::cli

@@ -7,13 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
-#include <talus/common/common.hpp>
 #include <talus/common/limits.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/sites/site_generator.hpp>
@@ -99,8 +93,7 @@ void bind(CLI::App& command, GenerateOptions& options) {
       ->check(CLI::IsMember(names));
   addOption(command, "--size N", options.size, "side in cells, or WIDTHxHEIGHT (default: 512)");
   addOption(command, "--resolution METRES", options.site.resolution_m, "cell size")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str();
+      ->check(CLI::Range(0.01, 1000.0));
   addOutput(command, "-o,--output FILE.tif", options.output,
             "elevation map to write; its layers are written to the same folder")
       ->required();
@@ -143,14 +136,7 @@ int run(const GenerateOptions& options, Context& context) {
 }  // namespace
 
 void addGenerate(CLI::App& app, Context& context) {
-  addCommand<GenerateOptions>(
-      app, context,
-      {.name = "generate",
-       .group = Group::kMaps,
-       .description = "generate an example site: elevation, classes, rocks and soils",
-       .examples = "  talus generate craters --size 1000 --resolution 0.5 --seed 7 -o site.tif\n"
-                   "  talus generate dunes --size 400x300 -o dunes.tif\n"},
-      bind, run);
+  addCommand<GenerateOptions>(app, context, "generate", bind, run);
 }
 
 }  // namespace talus::cli

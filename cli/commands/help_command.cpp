@@ -1,13 +1,8 @@
 // talus help [TOPIC]: describes file formats, or prints the help of a subcommand.
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/options.hpp>
 #include <talus/cli/ground/file_formats.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/common/common.hpp>
 #include <talus/common/nearest_name.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
@@ -75,17 +70,6 @@ std::string valueOf(const CLI::Option& option) {
   return option.get_type_size() == 0 ? "" : type.substr(0, endOfTypeName(type));
 }
 
-// Choices {a,b} of CLI11's membership check, separated by blanks; empty if the option accepts other words.
-std::string membersOf(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  const auto begin = type.find(":{");
-  if (begin == std::string::npos) return "";
-  std::string words = type.substr(begin + 2, type.find('}', begin) - begin - 2);
-  for (char& c : words)
-    if (c == ',') c = ' ';
-  return words;
-}
-
 // Options shown by --help; deprecated names have no group.
 std::vector<const CLI::Option*> shown(const CLI::App& app) {
   return app.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
@@ -105,23 +89,6 @@ std::string optionsText(const CLI::App& app) {
   return text;
 }
 
-std::string longNames(const CLI::App& app) {
-  std::string names;
-  for (const CLI::Option* option : shown(app))
-    for (const std::string& name : option->get_lnames()) names += " --" + name;
-  return names.empty() ? names : names.substr(1);
-}
-
-std::string memberCases(const CLI::App& app, const std::string& call) {
-  std::string text;
-  for (const CLI::Option* option : shown(app))
-    for (const std::string& name : option->get_lnames())
-      if (const std::string words = membersOf(*option); !words.empty())
-        text += fmt::format("    '{} --{}') COMPREPLY=($(compgen -W '{}' -- \"$cur\")); return ;;\n", call,
-                            name, words);
-  return text;
-}
-
 /// Returns the manual page talus(1) with all subcommands and their options.
 std::string manualPage(const CLI::App& app) {
   std::string text = ".TH TALUS 1 2026-11-01 \"talus " TALUS_VERSION
@@ -135,37 +102,6 @@ std::string manualPage(const CLI::App& app) {
   return text +
          ".SH EXIT STATUS\n0 done; 1 no (no route, no fit);\n2 the call or an input is wrong; 3 an internal "
          "failure; 130 cancelled.\n.SH FILES\nKeys and columns of all files: \\fBtalus help formats\\fR.\n";
-}
-
-/// Returns a bash script that completes subcommands, options and the choices of an option.
-std::string bashCompletion(const CLI::App& app) {
-  std::string calls, cases, members = memberCases(app, "");
-  for (const CLI::App* call : app.get_subcommands({})) {
-    calls += (calls.empty() ? "" : " ") + call->get_name();
-    cases += fmt::format("    {}) options='{}' ;;\n", call->get_name(), longNames(*call));
-    members += memberCases(*call, call->get_name());
-  }
-  return fmt::format(R"(# bash completion of talus; made by: talus help bash-completion
-_talus() {{
-  local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD - 1]}} call= options= word
-  for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
-    if [[ " {0} " == *" $word "* ]]; then call=$word; break; fi
-  done
-  case "$call $prev" in
-{1}  esac
-  case $call in
-{2}  esac
-  if [[ $cur == -* ]]; then
-    COMPREPLY=($(compgen -W "$options {3}" -- "$cur"))
-  elif [[ -z $call || $call == help ]]; then
-    COMPREPLY=($(compgen -W '{0}' -- "$cur"))
-  else
-    COMPREPLY=($(compgen -f -- "$cur"))
-  fi
-}}
-complete -o filenames -F _talus talus
-)",
-                     calls, members, cases, longNames(app));
 }
 
 constexpr Topic kTopics[] = {
@@ -182,7 +118,6 @@ constexpr Topic kTopics[] = {
                            {"output", "route.geojson"}});
      }},
     {"man", "manual page, for man", manualPage},
-    {"bash-completion", "script for bash", bashCompletion},
 };
 
 void bind(CLI::App& command, HelpOptions& options) {
@@ -228,12 +163,7 @@ int run(const HelpOptions& options, Context& context) {
 }  // namespace
 
 void addHelp(CLI::App& app, Context& context) {
-  addCommand<HelpOptions>(app, context,
-                          {.name = "help",
-                           .group = Group::kHelp,
-                           .description = "print keys of files, soils, rovers, or the help of a call",
-                           .examples = "  talus help formats\n  talus help soils\n  talus help plan\n"},
-                          bind, run);
+  addCommand<HelpOptions>(app, context, "help", bind, run);
 }
 
 }  // namespace talus::cli

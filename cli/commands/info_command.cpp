@@ -1,12 +1,8 @@
 // talus info DEM: properties of a map, for checks before planning.
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/cli/ground/ground_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/maps/maps.hpp>
 #include <talus/planner/route/route_json.hpp>
 
@@ -87,13 +83,7 @@ int run(const InfoOptions& options, Context& context) {
 }  // namespace
 
 void addInfo(CLI::App& app, Context& context) {
-  addCommand<InfoOptions>(
-      app, context,
-      {.name = "info",
-       .group = Group::kMaps,
-       .description = "summarise an elevation map: size, CRS, body, valid fraction and slopes",
-       .examples = "  talus info gale.tif\n  talus info --resolution 0.094 yard.tif --json\n"},
-      bind, run);
+  addCommand<InfoOptions>(app, context, "info", bind, run);
 }
 
 }  // namespace talus::cli

@@ -5,14 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/common/common.hpp>
 #include <talus/planner/route/polyline.hpp>
 
 namespace talus::cli {
@@ -27,7 +21,7 @@ struct InitOptions {
 
 void bind(CLI::App& command, InitOptions& options) {
   addMapOptions(command, options.map);
-  addOutput(command, "-o,--output MISSION.yaml", options.output, "mission to write")->capture_default_str();
+  addOutput(command, "-o,--output MISSION.yaml", options.output, "mission to write");
   groupOptions(command, "Output");
 }
 
@@ -138,13 +132,7 @@ int run(const InitOptions& options, Context& context) {
 }  // namespace
 
 void addInit(CLI::App& app, Context& context) {
-  addCommand<InitOptions>(
-      app, context,
-      {.name = "init",
-       .group = Group::kRoutes,
-       .description = "write a mission file for an elevation map, every key explained",
-       .examples = "  talus init gale.tif\n  talus init yard.tif --resolution 0.5 -o yard.yaml\n"},
-      bind, run);
+  addCommand<InitOptions>(app, context, "init", bind, run);
 }
 
 }  // namespace talus::cli

@@ -6,25 +6,16 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/campaign.hpp>
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/plot.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/maps/vector/vector_writer.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
@@ -290,18 +281,17 @@ int runPairs(const PlanOptions& options, Planner& planner, Context& context) {
   if (context.stop.stop_requested()) return Exit::kCancelled;
   const auto map = ground.map.published();
   const PlanRequest request = requestOf(options, planner.capabilities(), ground, context);
-  const std::vector<std::size_t> own = Part(options.part).of(pairs.size());
-  const auto outcomes = campaign.run(
-      own.size(), [&](std::size_t i) { return jsonText(planned(pairs[own[i]], map, request, planner)); },
-      request.watch);
-  std::vector<Json> lines;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    lines.push_back({{"pair", own[i] + 1}});
-    lines.back().update(outcomes[i].failed ? Json{{"status", "failed"}, {"reason", outcomes[i].text}}
-                                           : Json::parse(outcomes[i].text));
-  }
-  if (!campaign.leads()) return Exit::kDone;
+  const auto results = campaign.results(
+      {.count = pairs.size(), .part = options.part},
+      [&](std::size_t i) { return jsonText(planned(pairs[i], map, request, planner)); }, request.watch);
+  if (!results) return Exit::kDone;
   if (context.stop.stop_requested()) return Exit::kCancelled;
+  std::vector<Json> lines;
+  for (const auto& [pair, text] : *results) {
+    lines.push_back({{"pair", pair + 1}});
+    const Json line = Json::parse(text, nullptr, false);  // or the reason of a failure
+    lines.back().update(line.is_object() ? line : Json{{"status", "failed"}, {"reason", text}});
+  }
   if (!options.output.empty()) writeFile(options.output, pairsCsv(lines));
   if (context.json)
     printJson(nlohmann::ordered_json(lines));
@@ -448,15 +438,7 @@ int run(PlanOptions& options, Context& context) {
 }  // namespace
 
 void addPlan(CLI::App& app, Context& context) {
-  addCommand<PlanOptions>(
-      app, context,
-      {.name = "plan",
-       .group = Group::kRoutes,
-       .description = "plan a route of least cost from start to goal",
-       .examples =
-           "  talus plan gale.tif --rover mer --start -4.59d,137.44d --goal -4.6d,137.5d -o route.geojson\n"
-           "  talus plan mission.yaml --html route.html\n"},
-      bindPlan, run);
+  addCommand<PlanOptions>(app, context, "plan", bindPlan, run);
 }
 
 }  // namespace talus::cli

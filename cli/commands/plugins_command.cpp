@@ -1,9 +1,4 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
 #include <talus/planner/plugin/global_planner.hpp>
 #include <talus/planner/route/problem.hpp>
 
@@ -58,13 +53,7 @@ void bind(CLI::App& app, PluginsOptions& options) {
 }  // namespace
 
 void addPlugins(CLI::App& app, Context& context) {
-  addCommand<PluginsOptions>(app, context,
-                             {.name = "plugins",
-                              .group = Group::kRoutes,
-                              .description = "list the planners and features of a plugin or of the program",
-                              .examples = "  talus plugins\n"
-                                          "  talus plugins /usr/lib/talus/libtalus_planner.so\n"},
-                             bind, run);
+  addCommand<PluginsOptions>(app, context, "plugins", bind, run);
 }
 
 }  // namespace talus::cli

@@ -1,11 +1,5 @@
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/calibration/table/prediction_table.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
@@ -62,15 +56,7 @@ int run(const PredictOptions& options, Context& context) {
 }  // namespace
 
 void addPredict(CLI::App& app, Context& context) {
-  addCommand<PredictOptions>(
-      app, context,
-      {.name = "predict",
-       .group = Group::kSoil,
-       .description = "predict sinkage, torque and drawbar pull of each row with a model",
-       .examples =
-           "  talus predict drive.csv --model refined.yaml -o predicted.csv\n"
-           "  talus predict campaign.csv --model lunar_nominal --rover lunar_micro -o predicted.csv\n"},
-      bind, run);
+  addCommand<PredictOptions>(app, context, "predict", bind, run);
 }
 
 }  // namespace talus::cli

@@ -25,9 +25,9 @@
 #include <yaml-cpp/exceptions.h>
 
 #include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/options.hpp>
-#include <talus/cli/commands/program.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/limits.hpp>
 #include <talus/common/nearest_name.hpp>
@@ -41,14 +41,6 @@ constexpr double kLeastMemory_B = 1e8;
 
 // Largest integer up to which all integers are exact in JSON numbers; route files state the seed.
 constexpr double kGreatestSeed = 9007199254740992.0;
-
-CLI::Validator enoughMemory() {
-  const auto check = [](const std::string& bytes) -> std::string {
-    return std::strtod(bytes.c_str(), nullptr) >= kLeastMemory_B ? ""
-                                                                 : bytes + " bytes, must be 100 MB or more";
-  };
-  return CLI::Validator(check, "");
-}
 
 // CLI11's parser of sizes accepts a unit without a number as 1, 0x1GB as 1 GB, 010GB as 8 GB, and 1e as 1 EB.
 CLI::Validator decimalSize() {
@@ -181,11 +173,9 @@ void addGlobalOptions(CLI::App& app, Context& context) {
          "memory that the call may take, such as 4GB (default: half of what is free)")
       ->transform(CLI::AsSizeValue(false))
       ->transform(decimalSize())
-      ->check(enoughMemory())
+      ->check(numberThat([](double bytes) { return bytes >= kLeastMemory_B; }, "100 MB or more, in bytes"))
       ->type_name("SIZE");
-  addOption(app, "--seed N", context.seed, "seed of the random numbers")
-      ->check(within(0.0, kGreatestSeed))
-      ->capture_default_str();
+  addOption(app, "--seed N", context.seed, "seed of the random numbers")->check(within(0.0, kGreatestSeed));
   addOption(app, "--threads N", context.threads, "maximum number of threads (default: one per core)")
       ->check(CLI::Range(1, 1024));
   app.fallthrough();
@@ -225,7 +215,7 @@ int parseAndRun(CLI::App& app, const Context& context, std::vector<std::string> 
 
 }  // namespace
 
-int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
+int run(int argc, const char* const* argv, AddCommand* add) {
   keepStandardStreams();
   Interrupt interrupt;
   silenceLibraries();
@@ -239,10 +229,11 @@ int run(int argc, const char* const* argv, void (*add)(CLI::App&, Context&)) {
     requireMpiForRanks();
     CLI::App app("Plan safe routes for rovers over soft, sloping ground.", "talus");
     app.formatter(std::make_shared<HelpFormat>());
+    app.option_defaults()->always_capture_default();
     addGlobalOptions(app, context);
     app.footer(
-        "Topics: talus help formats, soils, rovers, missions. Manual page and completion for bash,\n"
-        "which `./dev install` puts in place: talus help man, talus help bash-completion.");
+        "Topics: talus help formats, soils, rovers, missions. Manual page: talus help man. `./dev install`\n"
+        "puts it in place, and the completion for bash.");
     add(app, context);
     refuseEmptyValues(app);
     code = parseAndRun(app, context, words(argc, argv));

@@ -5,24 +5,19 @@
 #include <unistd.h>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/commands/reproduce_command.hpp>
-#include <talus/common/common.hpp>
 
 namespace talus::cli {
 namespace {
 
 void bind(CLI::App& command, ReproduceOptions& options) {
-  addOption(command, "-o,--output DIR", options.output, "folder for validation.md and validation/*.png")
-      ->capture_default_str();
+  addOption(command, "-o,--output DIR", options.output, "folder for validation.md and validation/*.png");
   auto* published = command.add_flag("--published", options.published,
                                      "only rebuild published results: theirs, ours, error, source");
   addOption(command, "name NAME", options.published_name, "one published result (default: all)")
       ->needs(published);
   command.add_flag("--goals", options.goals_only, "only measure the estimators and print the table");
   command.add_option("--soils", options.soils, "number of soils sampled from thesis Table 2.1")
-      ->check(CLI::Range(8, 100000))
-      ->capture_default_str();
+      ->check(CLI::Range(8, 100000));
   addOption(command, "--measured M.csv", options.measured,
             "CSV of measured load, torque, sinkage, slip and drawbar pull");
 }
@@ -49,14 +44,7 @@ int start(const ReproduceOptions&, Context& context) {
 }  // namespace
 
 void addReproduce(CLI::App& app, Context& context, int (*run)(const ReproduceOptions&, Context&)) {
-  addCommand<ReproduceOptions>(
-      app, context,
-      {.name = "reproduce",
-       .group = Group::kSoil,
-       .description = "reproduce the thesis and published results; measure the estimators",
-       .examples = "  talus reproduce -o docs\n  talus reproduce --goals --soils 500\n"
-                   "  talus reproduce --published rowe-ross --json\n"},
-      bind, run);
+  addCommand<ReproduceOptions>(app, context, "reproduce", bind, run);
 }
 
 void addReproduce(CLI::App& app, Context& context) {

@@ -1,16 +1,8 @@
 // talus score DEM --path FILE: cost of a polyline under the planners' cost function.
 #include <cmath>
-#include <memory>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/annotation.hpp>
@@ -32,13 +24,6 @@ struct ScoreOptions {
   std::string chassis;
   bool prove = false;
 };
-
-nlohmann::ordered_json scoreJson(const std::vector<planner::Violation>& violations) {
-  auto list = nlohmann::ordered_json::array();
-  for (const auto& v : violations)
-    list.push_back({{"x_m", v.place.x_m}, {"y_m", v.place.y_m}, {"reason", v.reason}});
-  return list;
-}
 
 std::string betterText(const Route& best, double cost_J) {
   if (!best.found()) return fmt::format("best route  {}\n", best.reason);
@@ -120,7 +105,9 @@ int run(ScoreOptions& options, Context& context) {
   if (context.stop.stop_requested()) return Exit::kCancelled;
   auto json = summaryJson(score);
   if (!score.found()) json["status"] = "infeasible";
-  json["violations"] = scoreJson(score.violations);
+  json["violations"] = jsonList(score.violations, [](const planner::Violation& v) -> nlohmann::ordered_json {
+    return {{"x_m", v.place.x_m}, {"y_m", v.place.y_m}, {"reason", v.reason}};
+  });
   if (score.best)
     json["best_cost"] = score.best->found() ? nlohmann::ordered_json(score.best->cost) : nullptr;
   json["seconds"] = {{"load", ground.load_s}, {"costmap", ground.build_s}};
@@ -131,15 +118,7 @@ int run(ScoreOptions& options, Context& context) {
 }  // namespace
 
 void addScore(CLI::App& app, Context& context) {
-  addCommand<ScoreOptions>(
-      app, context,
-      {.name = "score",
-       .group = Group::kRoutes,
-       .description = "compute the cost of a polyline and list its violations",
-       .examples = "  talus score dem.tif --path route.geojson --rover mer --json\n"
-                   "  talus score dem.tif --path line.gpkg --prove\n"
-                   "  talus score dem.tif --path waypoints.csv --rover mer --chassis rocker-bogie\n"},
-      bind, run);
+  addCommand<ScoreOptions>(app, context, "score", bind, run);
 }
 
 }  // namespace talus::cli

@@ -1,15 +1,8 @@
 #include <cmath>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/cli/soil/trace_report.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/trace/formula_trace.hpp>
 #include <talus/terramech/calibration/trace/left_out.hpp>
@@ -39,8 +32,7 @@ void bind(CLI::App& command, TraceCommandOptions& options) {
   command
       .add_option("--significance", options.significance,
                   "share of tables without an effect in which one may be found")
-      ->check(CLI::Range(1e-3, 0.5))
-      ->capture_default_str();
+      ->check(CLI::Range(1e-3, 0.5));
   auto* hold_out =
       addOption(command, "--hold-out COLUMN[=VALUES]", options.hold_out,
                 "trace without these rows, then predict them: each level of a column in turn, or its values "
@@ -99,25 +91,22 @@ nlohmann::ordered_json formulaJson(const terramech::FormulaTrace& t) {
   const auto of = [&](double value) { return nlohmann::ordered_json{{t.answer, value}}; };
   nlohmann::ordered_json refined;
   for (const auto& [key, p] : t.parameters) refined[key] = {{"value", p.value}, {"std", p.std}};
-  const auto causes = [&](const auto& all) {
-    nlohmann::ordered_json out = nlohmann::ordered_json::array();
-    for (const terramech::FormulaEffect& e : all) {
-      nlohmann::ordered_json equal = nlohmann::ordered_json::array();
-      for (const std::string& column : e.equal) equal.push_back({{"name", "linear"}, {"covariate", column}});
-      out.push_back({{"name", "linear"},
-                     {"covariate", e.column},
-                     {"channel", t.answer},
-                     {"parameters", {{"slope", e.slope.value}, {"std", e.slope.std}}},
-                     {"p_value", e.p_value},
-                     {"evidence", e.gain},
-                     {"equal_to", equal}});
-    }
+  const auto linear = [](const std::string& column) -> nlohmann::ordered_json {
+    return {{"name", "linear"}, {"covariate", column}};
+  };
+  const auto causeOf = [&](const terramech::FormulaEffect& e) {
+    nlohmann::ordered_json out = linear(e.column);
+    out["channel"] = t.answer;
+    out["parameters"] = {{"slope", e.slope.value}, {"std", e.slope.std}};
+    out["p_value"] = e.p_value;
+    out["evidence"] = e.gain;
+    out["equal_to"] = jsonList(e.equal, linear);
     return out;
   };
   return {{"verdict", name(t.verdict)},
           {"base", {{"rmse", of(t.base_rmse)}}},
-          {"effects", causes(t.effects)},
-          {"rejected", causes(t.rejected)},
+          {"effects", jsonList(t.effects, causeOf)},
+          {"rejected", jsonList(t.rejected, causeOf)},
           {"refined", {{"rmse", of(t.refined_rmse)}, {"parameters", refined}}},
           {"held_out",
            {{"scheme", t.scheme},
@@ -165,7 +154,7 @@ int run(const TraceCommandOptions& options, Context& context) {
   const terramech::TableTrace trace = terramech::traceTable(table, how, watch);
   if (watch.stopped()) return Exit::kCancelled;
   if (!options.model_out.empty()) writeModel(options.model_out, trace, context);
-  if (!options.html.empty()) writeFile(options.html, tracePage(trace));
+  if (!options.html.empty()) writeFile(options.html, traceReport(trace, true).html());
   const auto runs = options.propose > 0 ? terramech::proposeRuns(trace.result, options.propose)
                                         : std::vector<terramech::ProposedRun>{};
   if (!options.runs_out.empty() && !runs.empty())
@@ -175,7 +164,7 @@ int run(const TraceCommandOptions& options, Context& context) {
   nlohmann::ordered_json json = traceJson(trace);
   if (options.propose > 0) json["proposals"] = proposalsJson(runs);
   if (!scores.empty()) json["scores"] = scoresJson(scores);
-  context.answer(json, traceText(trace) +
+  context.answer(json, traceReport(trace, false).text() +
                            (options.propose > 0 ? proposalText(runs, trace.result.trial) : "") +
                            causeScoreText(scores));
   return trace.applies.applies ? Exit::kDone : Exit::kNo;
@@ -184,17 +173,7 @@ int run(const TraceCommandOptions& options, Context& context) {
 }  // namespace
 
 void addTrace(CLI::App& app, Context& context) {
-  addCommand<TraceCommandOptions>(
-      app, context,
-      {.name = "trace",
-       .group = Group::kSoil,
-       .description = "find effects missing from a wheel model; write the refined model",
-       .examples = "  talus trace drive.csv --base soil.yaml --model-out refined.yaml --html residuals.html\n"
-                   "  talus trace drives.csv --formula 'charge_As = a*distance_m + b*height_m'\n"
-                   "  talus trace runs.csv --hold-out slip=0.5..1\n"
-                   "  talus trace runs.csv --propose 3 -o next.csv\n"
-                   "  talus trace runs.csv --score next.csv\n"},
-      bind, run);
+  addCommand<TraceCommandOptions>(app, context, "trace", bind, run);
 }
 
 }  // namespace talus::cli

@@ -3,23 +3,15 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
 #include <talus/terramech/terramech_io.hpp>
@@ -47,8 +39,7 @@ void bind(CLI::App& command, UpdateOptions& options) {
   command
       .add_option("--pose-error", options.intake.pose_std_m,
                   "standard deviation of x_m and y_m if there is no column pose_std_m [m]")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 10.0));
   command.add_flag("--replay", options.replay, "replay the whole journal instead of a telemetry file")
       ->needs(journal);
   addOption(command, "--join OTHER.db", options.joined,
@@ -281,16 +272,7 @@ int run(const UpdateOptions& options, Context& context) {
 }  // namespace
 
 void addUpdate(CLI::App& app, Context& context) {
-  addCommand<UpdateOptions>(
-      app, context,
-      {.name = "update",
-       .group = Group::kMaps,
-       .description = "update a traversability map with the telemetry of a drive",
-       .examples = "  talus update map.ot drive.csv -o map2.ot --journal evidence.db\n"
-                   "  talus update map.ot --replay --journal evidence.db -o rebuilt.ot\n"
-                   "  talus update map.ot --list\n"
-                   "  talus update map.ot --without 0f9b12c344aa81e7 -o map2.ot\n"},
-      bind, run);
+  addCommand<UpdateOptions>(app, context, "update", bind, run);
 }
 
 }  // namespace talus::cli

@@ -2,24 +2,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
-#include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
-#include <talus/common/common.hpp>
 #include <talus/costmap/costmap.hpp>
 #include <talus/costmap/surface/surface_tree.hpp>
 #include <talus/maps/maps_io.hpp>
@@ -216,14 +207,7 @@ int run(const ViewOptions& options, Context& context) {
 }  // namespace
 
 void addView(CLI::App& app, Context& context) {
-  addCommand<ViewOptions>(app, context,
-                          {.name = "view",
-                           .group = Group::kRoutes,
-                           .description = "write a self-contained HTML page: map layers, route and profiles",
-                           .examples = "  talus view route.geojson\n"
-                                       "  talus view careful.geojson fast.geojson -o both.html\n"
-                                       "  talus view gale.ot -o gale.html --png gale.png\n"},
-                          bind, run);
+  addCommand<ViewOptions>(app, context, "view", bind, run);
 }
 
 }  // namespace talus::cli

@@ -1,15 +1,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <talus/cli/app/command.hpp>
-#include <talus/cli/app/commands.hpp>
-#include <talus/cli/app/options.hpp>
-#include <talus/cli/app/output_file.hpp>
 #include <talus/cli/soil/table_options.hpp>
-#include <talus/common/common.hpp>
 #include <talus/terramech/contact/pneumatic_tyre.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/terramech_io.hpp>
@@ -195,15 +188,8 @@ std::string libraryText() {
 }  // namespace
 
 void addWheel(CLI::App& app, Context& context) {
-  addCommand<WheelOptions>(app, context,
-                           {.name = "wheel",
-                            .group = Group::kSoil,
-                            .description = "compute sinkage, torque, drawbar pull and side force of a wheel",
-                            .examples = "  talus wheel --soil lunar_nominal --rover lunar_micro --slip 0.3\n"
-                                        "  talus wheel --soil sand --rover mer --slip 0.2 --inflation 3000\n"
-                                        "  talus wheel --cases cases.csv -o forces.csv\n\n" +
-                                        libraryText()},
-                           bind, run);
+  CLI::App& command = addCommand<WheelOptions>(app, context, "wheel", bind, run);
+  command.footer(command.get_footer() + "\n" + libraryText());
 }
 
 }  // namespace talus::cli

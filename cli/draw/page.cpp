@@ -83,11 +83,8 @@ std::uint32_t sharesWord(const HeadingShares& shares) {
   return word;
 }
 
-ordered_json legendOf(const ValueLayer& layer) {
-  ordered_json legend = ordered_json::array();
-  for (const LayerClass& one : layer.classes)
-    legend.push_back({{"colour", hex(one.colour)}, {"label", one.name}});
-  return legend;
+ordered_json legendEntry(Colour colour, const std::string& label) {
+  return {{"colour", hex(colour)}, {"label", label}};
 }
 
 maps::Point latticePoint(const maps::Grid& grid, double east, double north) {
@@ -97,25 +94,22 @@ maps::Point latticePoint(const maps::Grid& grid, double east, double north) {
 
 /// Returns 32 colours of a scale in hexadecimal form, from low to high.
 ordered_json coloursOf(Scale scale) {
-  ordered_json colours = ordered_json::array();
+  ordered_json colours;
   for (int i = 0; i < 32; ++i) colours.push_back(hex(at(scale, i / 31.0)));
   return colours;
 }
 
 /// Returns the colour and label of each category.
 ordered_json categoryLegend() {
-  ordered_json legend = ordered_json::array();
-  for (const auto category : {terramech::Category::Safe, terramech::Category::Marginal,
-                              terramech::Category::Dangerous, terramech::Category::Unknown})
-    legend.push_back({{"colour", hex(colourOf(category))}, {"label", terramech::name(category)}});
-  return legend;
+  return jsonList(std::array{terramech::Category::Safe, terramech::Category::Marginal,
+                             terramech::Category::Dangerous, terramech::Category::Unknown},
+                  [](auto category) { return legendEntry(colourOf(category), terramech::name(category)); });
 }
 
 ordered_json headingLegend() {
-  ordered_json legend = ordered_json::array();
+  ordered_json legend;
   for (std::size_t i = 0; i < kAllowedNames.size(); ++i)
-    legend.push_back(
-        {{"colour", hex(colourOf(static_cast<AllowedHeadings>(i)))}, {"label", kAllowedNames[i]}});
+    legend.push_back(legendEntry(colourOf(static_cast<AllowedHeadings>(i)), kAllowedNames[i]));
   return legend;
 }
 
@@ -141,7 +135,8 @@ ordered_json layersOf(const Scene& scene) {
                      {"high", number(layer.range.high)},
                      {"unit", layer.unit}};
     else
-      json["legend"] = legendOf(layer);
+      json["legend"] =
+          jsonList(layer.classes, [](const LayerClass& one) { return legendEntry(one.colour, one.name); });
     addValues(json, layer);
     layers.push_back(std::move(json));
   }
@@ -277,56 +272,30 @@ ordered_json routeOf(const planner::Route& route) {
 }
 
 ordered_json places(const std::vector<maps::Point>& points) {
-  ordered_json out = ordered_json::array();
-  for (const maps::Point& p : points) out.push_back({number(p.x_m), number(p.y_m)});
-  return out;
+  return jsonList(points, [](const maps::Point& p) -> ordered_json {
+    return {number(p.x_m), number(p.y_m)};
+  });
 }
 
 // Track points as rows of plain numbers, because a drive has thousands of points.
 ordered_json storyOf(const TraverseRecord& story) {
-  ordered_json out{{"track", ordered_json::array()},
-                   {"events", ordered_json::array()},
-                   {"changes", ordered_json::array()},
-                   {"patches", ordered_json::array()},
-                   {"cell", story.grid.resolution_m}};
-  for (const planner::TrackPoint& t : story.drive.track)
-    out["track"].push_back({number(t.time_s), number(t.place.x_m), number(t.place.y_m), number(t.slip),
-                            number(t.energy_J / 1000.0), number(t.sinkage_m)});
-  for (const planner::TraverseEvent& e : story.drive.events)
-    out["events"].push_back({{"time", number(e.time_s)}, {"text", e.text}, {"route", places(e.route)}});
-  for (const CellChange& c : story.changes) {
+  ordered_json out{{"cell", story.grid.resolution_m}};
+  out["track"] = jsonList(story.drive.track, [](const planner::TrackPoint& t) -> ordered_json {
+    return {number(t.time_s), number(t.place.x_m),         number(t.place.y_m),
+            number(t.slip),   number(t.energy_J / 1000.0), number(t.sinkage_m)};
+  });
+  out["events"] = jsonList(story.drive.events, [](const planner::TraverseEvent& e) -> ordered_json {
+    return {{"time", number(e.time_s)}, {"text", e.text}, {"route", places(e.route)}};
+  });
+  out["changes"] = jsonList(story.changes, [&](const CellChange& c) -> ordered_json {
     const maps::Point centre = story.grid.centre(c.cell);
-    out["changes"].push_back({number(c.time_s), number(centre.x_m), number(centre.y_m),
-                              hex(colourOf(static_cast<terramech::Category>(c.category)))});
-  }
-  for (const planner::SoilPatch& p : story.patches)
-    out["patches"].push_back({number(p.centre.x_m), number(p.centre.y_m), number(p.radius_m)});
+    return {number(c.time_s), number(centre.x_m), number(centre.y_m),
+            hex(colourOf(static_cast<terramech::Category>(c.category)))};
+  });
+  out["patches"] = jsonList(story.patches, [](const planner::SoilPatch& p) -> ordered_json {
+    return {number(p.centre.x_m), number(p.centre.y_m), number(p.radius_m)};
+  });
   return out;
-}
-
-ordered_json areasOf(const Scene& scene) {
-  ordered_json areas = ordered_json::array();
-  for (const HatchedArea& area : scene.areas)
-    areas.push_back(
-        {{"name", area.name}, {"colour", hex(area.colour)}, {"image", dataUri(hatchImage(area))}});
-  return areas;
-}
-
-ordered_json marksOf(const Scene& scene) {
-  ordered_json marks = ordered_json::array();
-  for (const auto& [letter, place] : scene.marks)
-    marks.push_back({{"letter", letter}, {"x", number(place.x_m)}, {"y", number(place.y_m)}});
-  return marks;
-}
-
-ordered_json ringsOf(const Scene& scene) {
-  ordered_json rings = ordered_json::array();
-  for (const Ring& ring : scene.rings)
-    rings.push_back({{"x", number(ring.centre.x_m)},
-                     {"y", number(ring.centre.y_m)},
-                     {"radius", number(ring.radius_m)},
-                     {"label", ring.label}});
-  return rings;
 }
 
 ordered_json routesOf(const Scene& scene) {
@@ -338,13 +307,6 @@ ordered_json routesOf(const Scene& scene) {
   if (routes.empty() && scene.route)
     routes.push_back({{"name", ""}, {"colour", "#1b3fbf"}, {"points", routeOf(*scene.route)}});
   return routes;
-}
-
-ordered_json comparisonOf(const Scene& scene) {
-  ordered_json rows = ordered_json::array();
-  for (const ComparedFact& fact : scene.comparison)
-    rows.push_back({{"name", fact.name}, {"values", fact.values}});
-  return rows;
 }
 
 ordered_json dataOf(const Scene& scene) {
@@ -364,16 +326,27 @@ ordered_json dataOf(const Scene& scene) {
   data["shade"] = dataUri(shadeImage(shade));
   data["light"] = {{"low", number(light.low)}, {"high", number(light.high)}};
   data["layers"] = layersOf(scene);
-  data["areas"] = areasOf(scene);
+  data["areas"] = jsonList(scene.areas, [](const HatchedArea& area) -> ordered_json {
+    return {{"name", area.name}, {"colour", hex(area.colour)}, {"image", dataUri(hatchImage(area))}};
+  });
   data["headings"] = headingCostsOf(scene);
   data["categories"] = categoryLegend();
   data["scales"] = {{"magnitude", coloursOf(viridis())}, {"signed", coloursOf(blueRed())}};
   data["facts"] = scene.facts;
-  data["marks"] = marksOf(scene);
-  data["rings"] = ringsOf(scene);
+  data["marks"] = jsonList(scene.marks, [](const auto& mark) -> ordered_json {
+    return {{"letter", mark.first}, {"x", number(mark.second.x_m)}, {"y", number(mark.second.y_m)}};
+  });
+  data["rings"] = jsonList(scene.rings, [](const Ring& ring) -> ordered_json {
+    return {{"x", number(ring.centre.x_m)},
+            {"y", number(ring.centre.y_m)},
+            {"radius", number(ring.radius_m)},
+            {"label", ring.label}};
+  });
   data["provenance"] = scene.provenance;
   data["routes"] = routesOf(scene);
-  data["comparison"] = comparisonOf(scene);
+  data["comparison"] = jsonList(scene.comparison, [](const ComparedFact& fact) -> ordered_json {
+    return {{"name", fact.name}, {"values", fact.values}};
+  });
   if (scene.story) data["story"] = storyOf(*scene.story);
   return data;
 }

@@ -14,7 +14,7 @@ namespace talus::cli {
 /// the place-holders @TALUS_TITLE@, @TALUS_TEXT@ and @TALUS_DATA@ in this order.
 std::string_view pageTemplate();
 
-/// Returns the page of an HtmlReport without its data, of Vega and cli/page/report.js, with the same place-holders.
+/// Returns the page of a Report without its data, of Vega and cli/page/report.js, with the same place-holders.
 std::string_view reportTemplate();
 
 /// Returns the text with characters escaped that HTML reads as markup.

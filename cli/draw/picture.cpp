@@ -210,21 +210,21 @@ class Picture {
                     map_);
   }
 
+  /// Draws the line of a route, and returns its vertices.
+  std::vector<Spot> way(const planner::Route& route, Colour colour) {
+    std::vector<Spot> spots;
+    for (const planner::RouteVertex& v : route.vertices) spots.push_back(spot(v.x_m, v.y_m));
+    canvas_.line(spots, {.colour = kWhite, .width = 5.5});
+    canvas_.line(spots, {.colour = colour, .width = 2.8});
+    return spots;
+  }
+
   void route() {
     for (const Ring& ring : scene_.rings) encircle(ring);
     for (const auto& [letter, place] : scene_.marks) mark(spot(place.x_m, place.y_m), letter);
     if (!scene_.route || scene_.route->vertices.empty()) return;
-    for (std::size_t i = scene_.routes.size(); i-- > 1;) {
-      std::vector<Spot> other;
-      for (const planner::RouteVertex& v : scene_.routes[i].route.vertices)
-        other.push_back(spot(v.x_m, v.y_m));
-      canvas_.line(other, {.colour = kWhite, .width = 5.5});
-      canvas_.line(other, {.colour = seriesColour(i), .width = 2.8});
-    }
-    std::vector<Spot> spots;
-    for (const planner::RouteVertex& v : scene_.route->vertices) spots.push_back(spot(v.x_m, v.y_m));
-    canvas_.line(spots, {.colour = kWhite, .width = 5.5});
-    canvas_.line(spots, {.colour = kRoute, .width = 2.8});
+    for (std::size_t i = scene_.routes.size(); i-- > 1;) way(scene_.routes[i].route, seriesColour(i));
+    const std::vector<Spot> spots = way(*scene_.route, kRoute);
     manoeuvres(spots);
     mark(spots.front(), "S");
     mark(spots.back(), "G");
@@ -279,10 +279,22 @@ class Picture {
     canvas_.text("N", {tip.x, tip.y - 5}, {.size = 13, .bold = true, .anchor = 0.5});
   }
 
+  /// Writes one line of the legend, and moves on to the next.
+  void entry(Spot& at, const std::string& text, double indent = 36, const TextStyle& style = {}) {
+    canvas_.text(text, {at.x + indent, at.y + 4}, style);
+    at.y += 24;
+  }
+
+  /// The same for what a line of a colour shows.
+  void entry(Spot& at, const std::string& text, const Stroke& stroke) {
+    canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, stroke);
+    entry(at, text);
+  }
+
   void legend() {
     Spot at{map_.x + map_.width + kMargin, map_.y + 8};
     if (!scene_.image.empty())
-      canvas_.text("image of the ground", {at.x, at.y + 4}, {.bold = true}), at.y += 24;
+      entry(at, "image of the ground", 0, {.bold = true});
     else if (!scene_.headings.empty())
       headingLegend(at);
     else if (!scene_.layers.empty())
@@ -291,30 +303,16 @@ class Picture {
       for (double x = at.x; x < at.x + 26; x += 6)
         canvas_.line(std::array{Spot{x, at.y + 7}, Spot{x + 6, at.y - 7}},
                      {.colour = area.colour, .width = 2});
-      canvas_.text(area.name, {at.x + 36, at.y + 4}, {});
-      at.y += 24;
+      entry(at, area.name);
     }
-    if (!scene_.rings.empty()) {
-      canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRing, .width = 3.5});
-      canvas_.text(scene_.route ? "ring: see the warning" : "ring: the smaller set", {at.x + 36, at.y + 4},
-                   {});
-      at.y += 24;
-    }
+    if (!scene_.rings.empty())
+      entry(at, scene_.route ? "ring: see the warning" : "ring: the smaller set", {kRing, 3.5});
     if (scene_.route && !scene_.route->vertices.empty()) {
-      canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kRoute, .width = 3});
-      canvas_.text("route, start S to goal G", {at.x + 36, at.y + 4}, {});
-      at.y += 24;
-      if (scene_.route->drive) {
-        canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = kReverse, .width = 3});
-        canvas_.text("reverse; dots: turns in place", {at.x + 36, at.y + 4}, {});
-        at.y += 24;
-      }
+      entry(at, "route, start S to goal G", {kRoute, 3});
+      if (scene_.route->drive) entry(at, "reverse; dots: turns in place", {kReverse, 3});
     }
-    for (std::size_t i = 1; i < scene_.routes.size(); ++i) {
-      canvas_.line(std::array{at, Spot{at.x + 26, at.y}}, {.colour = seriesColour(i), .width = 3});
-      canvas_.text(scene_.routes[i].name, {at.x + 36, at.y + 4}, {});
-      at.y += 24;
-    }
+    for (std::size_t i = 1; i < scene_.routes.size(); ++i)
+      entry(at, scene_.routes[i].name, {seriesColour(i), 3});
     elevations(at);
     northArrow({at.x + 12, at.y + 80});
   }
@@ -325,13 +323,11 @@ class Picture {
   }
 
   void headingLegend(Spot& at) {
-    canvas_.text("allowed headings", {at.x, at.y + 4}, {.bold = true});
-    at.y += 24;
+    entry(at, "allowed headings", 0, {.bold = true});
     const std::array<double, 4> shares = sharesOf(scene_.headings);
     for (std::size_t i = 0; i < shares.size(); ++i) {
       swatch(at, colourOf(static_cast<AllowedHeadings>(i)));
-      canvas_.text(fmt::format("{}, {:.1f} %", kAllowedNames[i], 100.0 * shares[i]), {at.x + 36, at.y + 4});
-      at.y += 24;
+      entry(at, fmt::format("{}, {:.1f} %", kAllowedNames[i], 100.0 * shares[i]));
     }
   }
 

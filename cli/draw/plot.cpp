@@ -76,13 +76,12 @@ bool isNumber(const std::string& text) {
 
 }  // namespace
 
-std::string tableText(const Table& table, std::size_t indent) {
+std::string tableText(const Table& table) {
   std::string text;
   std::vector<std::size_t> widths(table.front().size());
   for (const auto& row : table)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   for (const auto& row : table) {
-    text += std::string(indent, ' ');
     for (std::size_t i = 0; i < row.size(); ++i)
       text += fmt::format(fmt::runtime(isNumber(table.back()[i]) ? "{:>{}}{}" : "{:<{}}{}"), row[i],
                           widths[i], i + 1 < row.size() ? "  " : "");
@@ -102,15 +101,18 @@ std::string csvText(const Table& table) {
   return text;
 }
 
-void HtmlReport::heading(const std::string& text) {
+void Report::heading(const std::string& text) {
+  text_ += "\n" + text + "\n";
   body_ += fmt::format("<h2>{}</h2>\n", escaped(text));
 }
 
-void HtmlReport::paragraph(const std::string& text) {
+void Report::paragraph(const std::string& text) {
+  text_ += text + "\n";
   body_ += fmt::format("<p>{}</p>\n", escaped(text));
 }
 
-void HtmlReport::table(const Table& table) {
+void Report::table(const Table& table) {
+  text_ += tableText(table);
   body_ += "<div class=\"table\"><table>\n";
   for (const auto& row : table) {
     const bool head = &row == &table.front();
@@ -123,17 +125,17 @@ void HtmlReport::table(const Table& table) {
   body_ += "</table></div>\n";
 }
 
-void HtmlReport::charts(const std::vector<Plot>& plots) {
+void Report::charts(const std::vector<Plot>& plots, const std::string& caption) {
   body_ += "<div class=\"charts\">\n";
   for (const Plot& plot : plots) {
     body_ += fmt::format("<figure class=\"chart\" id=\"chart{}\" aria-label=\"{}\"></figure>\n",
                          charts_.size(), escaped(plot.title));
     charts_.push_back(chartJson(plot));
   }
-  body_ += "</div>\n";
+  body_ += fmt::format("</div>\n<p>{}</p>\n", escaped(caption));
 }
 
-std::string HtmlReport::html() const {
+std::string Report::html() const {
   return filledPage(reportTemplate(), title_, body_, charts_);
 }
 

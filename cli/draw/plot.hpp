@@ -44,33 +44,33 @@ struct Plot {
 /// A table: its header, then its rows.
 using Table = std::vector<std::vector<std::string>>;
 
-/// Returns a table as text with columns as wide as their widest cell, indented by `indent` blanks. Numeric columns are
-/// right-aligned.
-std::string tableText(const Table& table, std::size_t indent = 0);
+/// Returns a table as text with columns as wide as their widest cell. Numeric columns are right-aligned.
+std::string tableText(const Table& table);
 
 /// Returns a table as CSV.
 std::string csvText(const Table& table);
 
-/// A self-contained HTML page of headings, paragraphs, tables and charts, in the order in which they are
-/// added.
-class HtmlReport {
+/// A report of headings, paragraphs, tables and charts, in the order in which they are added: as a self-contained HTML
+/// page, and as text for a terminal without title and charts.
+class Report {
  public:
-  explicit HtmlReport(std::string title) : title_(std::move(title)) {}
+  explicit Report(std::string title) : title_(std::move(title)) {}
 
   void heading(const std::string& text);
+  /// Adds a paragraph; line breaks in it are kept.
   void paragraph(const std::string& text);
   /// Adds a table, which scrolls where it is wider than the screen. Numeric cells are right-aligned.
   void table(const Table& table);
-  /// Adds charts, which are shown side by side if the screen is wide enough. Points that cover each other are left
-  /// out. @throws std::invalid_argument if x and y of a series differ in length
-  void charts(const std::vector<Plot>& plots);
+  /// Adds charts, which are shown side by side if the screen is wide enough, over a caption. Points that cover each
+  /// other are left out. @throws std::invalid_argument if x and y of a series differ in length
+  void charts(const std::vector<Plot>& plots, const std::string& caption = "");
 
-  /// Returns the finished page.
   std::string html() const;
+  const std::string& text() const noexcept { return text_; }
 
  private:
   std::string title_;
-  std::string body_;
+  std::string body_, text_;
   nlohmann::ordered_json charts_ = nlohmann::ordered_json::array();
 };
 

@@ -6,7 +6,6 @@
 #include <talus/cli/draw/scene.hpp>
 #include <talus/common/common.hpp>
 #include <talus/costmap/map/ground_curves.hpp>
-#include <talus/costmap/surface/surface_shape.hpp>
 #include <talus/maps/maps_io.hpp>
 #include <talus/planner/reach/reach.hpp>
 
@@ -72,25 +71,22 @@ BlockBeliefs beliefsOf(const costmap::TraversabilityMap& map, const Blocks& bloc
   BlockBeliefs out{Raster<HeadingShares>(blocks.coarse()), nothing, nothing, nothing};
   costmap::PlaceBeliefs beliefs(map);
   HeadingsOfCells headings(map);
-  for (int row = 0; row < blocks.coarse().height; ++row) {
-    for (int column = 0; column < blocks.coarse().width; ++column) {
-      const Cell block{column, row};
-      double pull = 0.0, pull_std = 0.0, sinkage = 0.0, count = 0.0;
-      blocks.forEach(block, [&](Cell cell) {
-        const costmap::CellBelief belief = beliefs.at(cell);
-        ++out.headings[block].count[static_cast<std::size_t>(headings.at(cell))];
-        if (belief.category > 2) return;
-        pull += static_cast<double>(belief.pull_mean);
-        pull_std += static_cast<double>(belief.pull_std);
-        sinkage += static_cast<double>(belief.sinkage_mean);
-        count += 1.0;
-      });
-      if (!(count > 0.0)) continue;
-      out.pull[block] = static_cast<float>(pull / count);
-      out.pull_std[block] = static_cast<float>(pull_std / count);
-      out.sinkage[block] = static_cast<float>(sinkage / count);
-    }
-  }
+  costmap::forEachCell(costmap::allOf(blocks.coarse()), [&](Cell block) {
+    double pull = 0.0, pull_std = 0.0, sinkage = 0.0, count = 0.0;
+    blocks.forEach(block, [&](Cell cell) {
+      const costmap::CellBelief belief = beliefs.at(cell);
+      ++out.headings[block].count[static_cast<std::size_t>(headings.at(cell))];
+      if (belief.category > 2) return;
+      pull += static_cast<double>(belief.pull_mean);
+      pull_std += static_cast<double>(belief.pull_std);
+      sinkage += static_cast<double>(belief.sinkage_mean);
+      count += 1.0;
+    });
+    if (!(count > 0.0)) return;
+    out.pull[block] = static_cast<float>(pull / count);
+    out.pull_std[block] = static_cast<float>(pull_std / count);
+    out.sinkage[block] = static_cast<float>(sinkage / count);
+  });
   return out;
 }
 
@@ -98,12 +94,11 @@ HeadingCosts headingCosts(const costmap::TraversabilityMap& map, const Blocks& b
   const auto version = map.published();
   HeadingCosts out{Raster<costmap::CellCode>(blocks.coarse()), Raster<std::uint8_t>(blocks.coarse()),
                    std::shared_ptr<const costmap::TravelCost>(version, &version->cost())};
-  for (int row = 0; row < blocks.coarse().height; ++row)
-    for (int column = 0; column < blocks.coarse().width; ++column) {
-      const Cell cell = blocks.middle({column, row});
-      out.codes[{column, row}] = version->at(cell);
-      out.categories[{column, row}] = map.costs().category(cell);
-    }
+  costmap::forEachCell(costmap::allOf(blocks.coarse()), [&](Cell block) {
+    const Cell cell = blocks.middle(block);
+    out.codes[block] = version->at(cell);
+    out.categories[block] = map.costs().category(cell);
+  });
   return out;
 }
 
@@ -448,19 +443,18 @@ Scene reachScene(const maps::ElevationMap& map, const costmap::CostGrid& cost, c
                    .range = {0.0, 1.0},
                    .decimals = 0};
   Extent reached, leading;
-  for (int row = 0; row < scene.grid().height; ++row)
-    for (int column = 0; column < scene.grid().width; ++column) {
-      const maps::Point centre = scene.grid().centre({column, row});
-      const auto cell = cost.grid().cellAt(centre);
-      if (!cell) continue;
-      if (from.holds(*cell)) {
-        layer.values[{column, row}] = 0.0F;
-        reached.add(centre);
-      } else if (to.holds(*cell)) {
-        layer.values[{column, row}] = 1.0F;
-        leading.add(centre);
-      }
+  costmap::forEachCell(costmap::allOf(scene.grid()), [&](Cell pixel) {
+    const maps::Point centre = scene.grid().centre(pixel);
+    const auto cell = cost.grid().cellAt(centre);
+    if (!cell) return;
+    if (from.holds(*cell)) {
+      layer.values[pixel] = 0.0F;
+      reached.add(centre);
+    } else if (to.holds(*cell)) {
+      layer.values[pixel] = 1.0F;
+      leading.add(centre);
     }
+  });
   const std::string first = fmt::format("reached from the start: {} cells", reached.count);
   const std::string second = fmt::format("leading to the goal: {} cells", leading.count);
   layer.classes = {{first, seriesColour(0)}, {second, seriesColour(4)}};

@@ -13,6 +13,7 @@
 #include <talus/cli/draw/canvas.hpp>
 #include <talus/costmap/cost/cost_model.hpp>
 #include <talus/costmap/costmap.hpp>
+#include <talus/costmap/surface/surface_shape.hpp>
 #include <talus/maps/maps.hpp>
 #include <talus/planner/route/heading_set.hpp>
 #include <talus/planner/route/polyline.hpp>
@@ -60,19 +61,17 @@ class Blocks {
   template <typename Value>
   maps::Raster<float> mean(Value value) const {
     maps::Raster<float> out(coarse_, std::nanf(""));
-    for (int row = 0; row < coarse_.height; ++row) {
-      for (int column = 0; column < coarse_.width; ++column) {
-        double sum = 0.0;
-        int count = 0;
-        forEach({column, row}, [&](maps::Cell cell) {
-          const auto v = static_cast<double>(value(cell));
-          if (std::isnan(v)) return;
-          sum += v;
-          ++count;
-        });
-        if (count > 0) out[{column, row}] = static_cast<float>(sum / count);
-      }
-    }
+    costmap::forEachCell(costmap::allOf(coarse_), [&](maps::Cell block) {
+      double sum = 0.0;
+      int count = 0;
+      forEach(block, [&](maps::Cell cell) {
+        const auto v = static_cast<double>(value(cell));
+        if (std::isnan(v)) return;
+        sum += v;
+        ++count;
+      });
+      if (count > 0) out[block] = static_cast<float>(sum / count);
+    });
     return out;
   }
 

@@ -41,8 +41,7 @@ constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 maps::Layer layer(const maps::Grid& grid, std::string name, std::string unit,
                   const std::function<float(maps::Cell)>& value) {
   maps::Layer out{std::move(name), std::move(unit), maps::Raster<float>(grid)};
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column) out.values[{column, row}] = value({column, row});
+  costmap::forEachCell(costmap::allOf(grid), [&](maps::Cell cell) { out.values[cell] = value(cell); });
   return out;
 }
 
@@ -118,8 +117,7 @@ void addReadOptions(CLI::App& command, ElevationFile& file) {
   addOption(command, "--below METRES", file.below_m,
             "of an OctoMap: use the ground at or below this elevation, as under a bridge");
   addOption(command, "--max-cells N", read.max_cells, "largest accepted map, in cells")
-      ->check(within(1.0, 1e15))
-      ->capture_default_str();
+      ->check(within(1.0, 1e15));
   groupOptions(command, "Elevation map");
 }
 
@@ -168,20 +166,16 @@ void addPolicy(CLI::App& command, costmap::TravelPolicy& policy) {
           "--slope-uncertainty-deg", [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; },
           "slope uncertainty on either side of a category threshold (default: 5)")
       ->type_name("DEG");
-  addOption(command, "--time-weight W", policy.time_weight_W, "cost of time, joules per second")
-      ->capture_default_str();
+  addOption(command, "--time-weight W", policy.time_weight_W, "cost of time, joules per second");
   addOption(command, "--entrapment FRACTION", policy.entrapment,
             "fraction of the places with too weak soil that immobilise a rover that monitors its slip")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 1.0));
   command.add_flag("--unmonitored", policy.unmonitored,
                    "slip is not monitored: every place with too weak soil immobilises the rover");
   addOption(command, "--pose-error METRES", policy.pose_error_m,
             "position error of the rover: soil is evaluated that far beyond the wheels")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  addOption(command, "--risk-weight J", policy.risk_weight_J, "cost of losing the rover, joules")
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 100.0));
+  addOption(command, "--risk-weight J", policy.risk_weight_J, "cost of losing the rover, joules");
   groupOptions(command, "Cost and thresholds");
 }
 

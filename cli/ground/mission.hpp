@@ -9,8 +9,15 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/ground/ground_options.hpp>
+#include <talus/planner/check/route_check.hpp>
+#include <talus/planner/plugin/plugin_planner.hpp>
 #include <talus/planner/simulation/simulation.hpp>
 #include <talus/terramech/io/yaml_fields.hpp>
+
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
 
 namespace talus::cli {
 
@@ -53,10 +60,41 @@ struct PlanOptions {
   std::string image;  ///< raster that page and picture show under the route; empty: none
 };
 
-/// Return the keys of a mission file, of its mapping `maps` and of its mapping `thresholds`.
-std::span<const terramech::FileKey> missionKeys();
-std::span<const terramech::FileKey> missionMapKeys();
-std::span<const terramech::FileKey> thresholdKeys();
+/// Declares the options --start-heading, --goal-heading (each also in degrees), --turning-radius,
+/// --no-reverse and --chassis.
+void addMotionOptions(CLI::App& command, MotionOptions& drive);
+
+/// Declares a heading option `name` in radians and NAME-deg in degrees.
+void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad,
+                const std::string& text);
+
+/// Declares the option --chassis.
+void addChassisOption(CLI::App& command, std::string& chassis);
+
+/// Returns a check that rejects values that are not terramech::isTurningRadius().
+CLI::Validator turningRadius();
+
+/// Returns the kinematics of the map's rover, overridden by the options of the call.
+planner::Kinematics kinematicsOf(const MotionOptions& drive, const costmap::TraversabilityMap& map);
+
+/// Returns a chassis of the kind "rigid" or "rocker-bogie"; nullopt if `kind` is empty. The chassis refers to
+/// the map, which must outlive the chassis.
+std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap::TraversabilityMap& map);
+
+/// Declares the option --plugin.
+void addPluginOption(CLI::App& command, std::string& plugin);
+
+/// Declares the option --time, the time limit of a plugin, for calls without another time limit.
+void addPluginTime(CLI::App& command, double& time_limit_s);
+
+/// Declares the option --image.
+void addImageOption(CLI::App& command, std::string& image);
+
+/// Declares the options of `talus plan`.
+void bindPlan(CLI::App& command, PlanOptions& options);
+
+/// Checks that positions and options of a call are consistent with each other. @throws InputError otherwise
+void requirePlaces(const PlanOptions& options);
 
 /// Returns true if the extension of the path is that of a mission file, .yaml or .yml.
 bool isMission(const std::string& path);
@@ -70,9 +108,6 @@ void readMission(PlanOptions& options);
 /// Returns the text of a mission file with all keys that the reader accepts. Keys of the file and of its mapping `maps`
 /// have the values given here; the others, and those with an empty text, are comments with their meaning.
 std::string missionText(const std::map<std::string, nlohmann::json>& values);
-
-/// Description of the format of TRUTH.yaml (true soils of a simulation) for the help.
-extern const char* const kTruthFormat;
 
 /// Returns the content of a truth file. Throws InputError with file, line and field.
 planner::Truth readTruth(const std::string& path);

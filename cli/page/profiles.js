@@ -95,16 +95,12 @@ function layoutOf(element, routes) {
 // Returns {mark(s), draw()} of the profiles. Calls onHover(s) when the pointer moves, with s the
 // distance from the start [m].
 function drawProfiles(element, routes, onHover) {
-  const need = name => vegaModules["vega-" + name];
-  for (const kind of ["transforms", "view-transforms", "encode"]) Object.assign(need("dataflow").transforms, need(kind));
   const length = Math.max(...routes.map(({points}) => points[points.length - 1].s));
   const unit = length >= 2000 ? {name: "km", metres: 1000} : {name: "m", metres: 1};
   let view = null, quiet = false;
   const draw = () => {
     if (view) view.finalize();
-    view = new (need("view").View)(need("parser").parse(profileSpec(routes, unit, layoutOf(element, routes))),
-                                   {renderer: "svg", container: element, hover: false});
-    view.run();
+    view = drawVega(profileSpec(routes, unit, layoutOf(element, routes)), element, "svg");
     view.addSignalListener("hover", (_, value) => { if (!quiet) onHover(value * unit.metres); });
   };
   addEventListener("resize", draw);

@@ -1,4 +1,4 @@
-// Terrain in 3-D with the selected layer and the routes, drawn by three.js, which is loaded at the first use.
+// Terrain in 3-D under the selected layer and the routes, drawn by three.js, which is loaded at the first use.
 // Axes: metres east, up and south of the map's centre; the page states the vertical exaggeration.
 function offerRelief(data, explain) {
   const button = document.getElementById("solid"), place = document.getElementById("relief");
@@ -74,7 +74,7 @@ function groundGeometry(heights, data) {
 }
 
 // The selected layer as on the map: drawn with its opacity over the hillshade, then multiplied by the
-// hillshade.
+// hillshade; over it the routes.
 async function groundTexture(data) {
   const image = uri => new Promise(done => {
     const made = new Image();
@@ -97,58 +97,38 @@ async function groundTexture(data) {
     context.filter = lightFilter(data.light);
     context.drawImage(shade, 0, 0, canvas.width, canvas.height);
   }
+  Object.assign(context, {globalAlpha: 1, globalCompositeOperation: "source-over", filter: "none"});
+  const {west, south, east, north} = data.bounds;
+  const spot = p => [(p.x - west) / (east - west) * canvas.width, (north - p.y) / (north - south) * canvas.height];
+  const {colours} = coloursOf(quantities[document.getElementById("quantity").value || 0], data);
+  data.routes.forEach(({points, colour}, k) => drawWay(context, points.map(spot), colours[k], colour));
   const texture = new THREE.CanvasTexture(canvas);
   texture.minFilter = THREE.LinearFilter;
   texture.generateMipmaps = false;
   return texture;
 }
 
-// A label that faces the camera.
-function letterAt(letter, size) {
-  const canvas = document.createElement("canvas"), context = canvas.getContext("2d", {willReadFrequently: true});
-  canvas.width = canvas.height = 64;
-  context.fillStyle = "#1b3fbf";
+// Draws a route with a rim, in the colours of its quantity, and its ends.
+function drawWay(context, spots, colours, rim) {
+  const width = Math.hypot(context.canvas.width, context.canvas.height) / 300, last = spots.length - 1;
+  const stroke = (line, colour, share) => {
+    context.strokeStyle = colour;
+    context.lineWidth = share * width;
+    context.stroke(new Path2D("M" + line.map(spot => spot.join()).join("L")));
+  };
+  context.lineJoin = context.lineCap = "round";
+  stroke(spots, rim, 2.2);
+  stroke(spots, "#fff", 1.6);
+  spots.slice(1).forEach((spot, i) => stroke([spots[i], spot], colours[i], 1));
   context.textAlign = "center";
-  context.strokeStyle = "#fff";
-  context.lineWidth = 6;
-  context.beginPath();
-  context.arc(32, 32, 28, 0, 2 * Math.PI);
-  context.fill();
-  context.stroke();
-  context.fillStyle = "#fff";
-  context.font = "bold 34px sans-serif";
-  context.fillText(letter, 32, 44);
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({map: new THREE.CanvasTexture(canvas), depthTest: false}));
-  sprite.scale.set(size, size, 1);
-  return sprite;
-}
-
-// A route as a tube in the colours of its quantity, raised by its radius, with a rim and labels at both ends.
-function routeInSpace({points, colour: rim}, colours, spot, extent) {
-  const group = new THREE.Group(), most = 600, radius = extent / 320;
-  const chosen = points.length <= most ? points.map((_, i) => i)
-    : Array.from({length: most}, (_, i) => Math.round(i * (points.length - 1) / (most - 1)));
-  const distinct = chosen.filter((k, i) => i === 0 || points[k].s > points[chosen[i - 1]].s);
-  const lift = new THREE.Vector3(0, radius, 0);
-  if (distinct.length > 1) {
-    const curve = new THREE.CatmullRomCurve3(distinct.map(k => spot(points[k]).add(lift)), false, "centripetal");
-    const pieces = 2 * distinct.length, around = 6, tube = new THREE.TubeBufferGeometry(curve, pieces, radius, around);
-    const length = points[distinct[distinct.length - 1]].s, parts = [];
-    for (let i = 0; i <= pieces; ++i) {
-      const k = points.indexOf(pointAt(points, length * i / pieces)), colour = new THREE.Color(colours[k]);
-      for (let j = 0; j <= around; ++j) parts.push(colour.r, colour.g, colour.b);
-    }
-    tube.setAttribute("color", new THREE.Float32BufferAttribute(parts, 3));
-    group.add(new THREE.Mesh(tube, new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors})));
-    const wider = new THREE.TubeBufferGeometry(curve, pieces, 1.7 * radius, around);  // drawn as a rim
-    group.add(new THREE.Mesh(wider, new THREE.MeshBasicMaterial({color: rim, side: THREE.BackSide})));
+  context.textBaseline = "middle";
+  context.font = `bold ${3 * width}px sans-serif`;
+  for (const [[x, y], letter] of [[spots[0], "S"], [spots[last], "G"]]) {
+    stroke([[x, y], [x, y]], "#fff", 5.4);
+    stroke([[x, y], [x, y]], "#1b3fbf", 4.6);
+    context.fillStyle = "#fff";
+    context.fillText(letter, x, y);
   }
-  for (const [p, letter] of [[points[0], "S"], [points[points.length - 1], "G"]]) {
-    const sprite = letterAt(letter, extent / 28);
-    sprite.position.copy(spot(p)).add(new THREE.Vector3(0, extent / 45, 0));
-    group.add(sprite);
-  }
-  return group;
 }
 
 // A click without dragging explains the cell under the pointer, as on the map.
@@ -191,7 +171,6 @@ async function makeRelief(place, data, heights, surface, explain) {
   scene.add(ground);
   const slider = document.getElementById("exaggeration");
   slider.value = Math.min(10, Math.max(1, Math.round(0.12 * extent / Math.max(heights.range, 1e-9))));
-  let routes = new THREE.Group();
 
   async function paint() {
     if (ground.material.map) ground.material.map.dispose();
@@ -205,14 +184,6 @@ async function makeRelief(place, data, heights, surface, explain) {
     note.textContent = `vertical exaggeration ${factor} × · ${heights.range.toFixed(0)} m of relief over ` +
       `${((east - west) / 1000).toPrecision(3)} km · first view from the south`;
     ground.scale.y = factor;
-    scene.remove(routes);
-    routes = new THREE.Group();
-    const spot = p => new THREE.Vector3(p.x - (west + east) / 2, factor * (p.elevation - heights.middle),
-                                        (south + north) / 2 - p.y);
-    const drawn = data.routes.filter(({points}) => points.every(p => p.elevation !== null));
-    const {colours} = coloursOf(quantities[document.getElementById("quantity").value || 0], data);
-    for (const route of drawn) routes.add(routeInSpace(route, colours[data.routes.indexOf(route)], spot, extent));
-    scene.add(routes);
     render();
   }
   function fit() {
@@ -223,8 +194,7 @@ async function makeRelief(place, data, heights, surface, explain) {
     render();
   }
   slider.addEventListener("input", raise);
-  document.getElementById("quantity").addEventListener("change", raise);
-  for (const id of ["layer", "opacity"]) document.getElementById(id).addEventListener("change", paint);
+  for (const id of ["layer", "opacity", "quantity"]) document.getElementById(id).addEventListener("change", paint);
   addEventListener("resize", fit);
   explainOnClick(data, {renderer, camera, ground}, explain);
   const away = 1.7 * extent / Math.min(1, place.clientWidth / place.clientHeight);  // shows all

@@ -57,13 +57,10 @@ function chartSpec({title, x, y, series}, width) {
 }
 
 function drawCharts() {
-  const need = name => vegaModules["vega-" + name];
-  for (const kind of ["transforms", "view-transforms", "encode"]) Object.assign(need("dataflow").transforms, need(kind));
   for (const [k, chart] of charts.entries()) {
     const element = document.getElementById("chart" + k);
     const points = chart.series.reduce((sum, {values}) => sum + values.length, 0);
-    new (need("view").View)(need("parser").parse(chartSpec(chart, element.clientWidth)),
-                            {renderer: points > 4000 ? "canvas" : "svg", container: element, hover: false}).run();
+    drawVega(chartSpec(chart, element.clientWidth), element, points > 4000 ? "canvas" : "svg");
   }
 }
 

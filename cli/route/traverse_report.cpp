@@ -110,8 +110,7 @@ ordered_json asJson(const std::vector<planner::WorldResult>& results) {
   ordered_json out{{"worlds", rates.worlds}};
   addRates(out, rates);
   out["mean_energy_J_where_reached"] = rates.energy_J;
-  out["each"] = ordered_json::array();
-  for (const planner::WorldResult& r : results) out["each"].push_back(asJson(r));
+  out["each"] = jsonList(results, [](const planner::WorldResult& r) { return asJson(r); });
   return out;
 }
 
@@ -166,33 +165,19 @@ std::string asText(const BeliefResults& beliefs) {
   return text + "95 % confidence intervals in brackets.\n";
 }
 
-JobResults worldJobs(const WorldCount& count, const World& world, const Part& part, const Campaign& campaign,
-                     const ProgressMonitor& watch) {
-  const std::vector<std::size_t> own = part.of(count.beliefs * count.worlds);
-  const auto simulate = [&](std::size_t k) {
-    return jsonText(asJson(world(own[k] / count.worlds, own[k] % count.worlds)));
-  };
-  const auto outcomes = campaign.run(own.size(), simulate, watch, count.workers);
-  JobResults results;
-  for (std::size_t k = 0; k < outcomes.size(); ++k)
-    if (!outcomes[k].stopped) results[own[k]] = outcomes[k].text;
-  return results;
-}
-
-SimulatedWorlds simulatedWorlds(const WorldCount& count, const JobResults& jobs) {
-  SimulatedWorlds out{.results = std::vector<std::vector<planner::WorldResult>>(count.beliefs),
-                      .failures = {}};
-  for (std::size_t i = 0; i < count.worlds; ++i) {
+SimulatedWorlds simulatedWorlds(std::size_t beliefs, std::size_t worlds, const JobResults& jobs) {
+  SimulatedWorlds out{.results = std::vector<std::vector<planner::WorldResult>>(beliefs), .failures = {}};
+  for (std::size_t i = 0; i < worlds; ++i) {
     std::vector<nlohmann::ordered_json> each;
-    for (std::size_t b = 0; b < count.beliefs && each.size() == b; ++b) {
-      const auto found = jobs.find(b * count.worlds + i);
+    for (std::size_t b = 0; b < beliefs && each.size() == b; ++b) {
+      const auto found = jobs.find(b * worlds + i);
       if (found == jobs.end()) break;
       if (found->second.starts_with('{'))
         each.push_back(nlohmann::ordered_json::parse(found->second));
       else
         out.failures.push_back({i, found->second});  // the reason of a failed job
     }
-    for (std::size_t b = 0; b < count.beliefs && each.size() == count.beliefs; ++b)
+    for (std::size_t b = 0; b < beliefs && each.size() == beliefs; ++b)
       out.results[b].push_back(worldResult(each[b]));
   }
   return out;

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,8 +15,6 @@
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 
 namespace talus::cli {
-
-class Campaign;
 
 /// Returns the display name of a belief (knowledge of the soils that the rover has at the start): the name of
 /// planner::SoilKnowledge, or "perfect knowledge".
@@ -62,23 +59,9 @@ struct SimulatedWorlds {
   std::vector<Failure> failures;
 };
 
-/// Function that simulates world i under belief b.
-using World = std::function<planner::WorldResult(std::size_t b, std::size_t i)>;
-
-/// Number of beliefs and worlds, and of concurrent simulations without MPI.
-struct WorldCount {
-  std::size_t beliefs = 1;
-  std::size_t worlds = 1;
-  std::size_t workers = 1;
-};
-
-/// Simulates the worlds of a part under all beliefs, distributed over the ranks of the campaign; results do not depend
-/// on the number of ranks. An exception fails only its world. Returns an empty result on ranks other than 0.
-JobResults worldJobs(const WorldCount& count, const World& world, const Part& part, const Campaign& campaign,
-                     const ProgressMonitor& watch);
-
-/// Returns the simulations of worldJobs(); worlds without a result are omitted.
-SimulatedWorlds simulatedWorlds(const WorldCount& count, const JobResults& jobs);
+/// Returns the simulations of a campaign whose job b `worlds` + i is asJson() of world i under belief b; worlds without
+/// a result are omitted.
+SimulatedWorlds simulatedWorlds(std::size_t beliefs, std::size_t worlds, const JobResults& jobs);
 
 /// Writes the wheel telemetry of a traverse simulation as CSV, which `talus update` can read. @throws
 /// InputError if the file cannot be written

@@ -114,9 +114,9 @@ void warnOfRejected(const std::vector<terramech::RejectedRow>& rows, const std::
 }
 
 nlohmann::ordered_json rejectedJson(const std::vector<terramech::RejectedRow>& rows) {
-  auto all = nlohmann::ordered_json::array();
-  for (const auto& row : rows) all.push_back({{"line", row.line}, {"reason", row.reason}});
-  return all;
+  return jsonList(rows, [](const terramech::RejectedRow& row) -> nlohmann::ordered_json {
+    return {{"line", row.line}, {"reason", row.reason}};
+  });
 }
 
 namespace {

@@ -1,17 +1,170 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/soil/trace_answer.hpp>
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/soil/trace_report.hpp>
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/io/csv_reader.hpp>
 
 namespace talus::cli {
+
+using namespace terramech;
+
+namespace {
+
+bool same(const Candidate& a, const Candidate& b) {
+  const Effect &x = a.parts.front(), &y = b.parts.front();
+  return x.name == y.name && a.covariate() == b.covariate() && x.only_value == y.only_value;
+}
+
+/// Returns true if the model's predictions for the trial's rows equal `a` within 1e-5.
+bool agree(const Eigen::MatrixXd& a, const RefinedModel& model, const Trial& trial) {
+  SolvedContacts solved;
+  const Eigen::MatrixXd difference = a - predictRows(model, trial, solved);
+  return difference.array().isNaN().select(0.0, difference).cwiseAbs().maxCoeff() <= 1e-5;
+}
+
+struct Term {
+  const char* name;
+  double Soil::*field;
+};
+
+/// Terms of the base model that an effect of the library may replace.
+constexpr Term kTerms[] = {{"slip_sinkage_exponent", &Soil::slip_sinkage_exponent},
+                           {"digging_exponent", &Soil::digging_exponent},
+                           {"side_bulldozing", &Soil::side_bulldozing}};
+
+EffectRole roleOf(const RefinedModel& refined, std::size_t effect, const Trial& trial) {
+  SolvedContacts solved;
+  const Eigen::MatrixXd with = predictRows(refined, trial, solved);
+  RefinedModel without = refined;
+  without.effects.erase(without.effects.begin() + static_cast<long>(effect));
+  if (agree(with, without, trial)) return {.adds = false};
+  for (const Term& term : kTerms) {
+    RefinedModel less = without;
+    less.soil.*term.field = 0.0;
+    if (agree(with, less, trial)) return {.adds = false, .takes_back = {term.name}};
+  }
+  return {};
+}
+
+/// Empty if no sensor is inconsistent with its declared error.
+std::string strainedText(const Answer& a) {
+  std::string text;
+  for (const StrainedSensor& s : a.strained)
+    text += fmt::format("{}{} would have to err {:.1f} times as declared ({:.3g} in place of {:.3g})",
+                        text.empty() ? "" : "; ", s.column, s.fitted / s.declared, s.fitted, s.declared);
+  return text;
+}
+
+/// Returns the name, column and channel of each effect.
+std::string causes(const TraceResult& result) {
+  std::string text;
+  for (const TracedEffect& e : result.effects)
+    text += fmt::format("{}{} ({}) in {}", text.empty() ? "" : ", ", e.chosen.candidate.parts.front().name,
+                        e.chosen.candidate.covariate(), name(e.channel));
+  return text;
+}
+
+/// Returns the text on effects with several equivalent causes; empty if each effect has one cause.
+std::string equalCauses(const TraceResult& result) {
+  std::string text;
+  for (const TracedEffect& e : result.effects) {
+    if (e.equal.empty()) continue;
+    text += fmt::format("; {} causes are equal: {} ({})", e.equal.size() + 1,
+                        e.chosen.candidate.parts.front().name, e.chosen.candidate.covariate());
+    for (const Explanation& other : e.equal)
+      text += fmt::format(", {} ({})", other.candidate.parts.front().name, other.candidate.covariate());
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string refusal(const TraceResult& result, const Explanation& rejected) {
+  if (rejected.gain <= result.threshold) return "gains no more than noise would";
+  if (!result.effects.empty()) return "explains less than the selected effect";
+  if (!result.trial.moment.empty())
+    return "gains more than noise would, but carries less than an effect of a drive must";
+  return "gains more than noise would, but not beside the others";
+}
+
+std::string refusal(const TraceResult& result) {
+  if (result.last_promises.empty() || result.last_promises.front().gain <= 0.0) return "";
+  const Promise& promise = result.last_promises.front();
+  if (promise.gain <= result.threshold)
+    return fmt::format("gain {:.1f}, below the {:.1f} that would be evidence", promise.gain,
+                       result.threshold);
+  const std::string first = fmt::format("gain {:.1f} to first order", promise.gain);
+  const auto is_it = [&](const auto& e) { return same(e.candidate, promise.candidate); };
+  const auto fitted = std::find_if(result.rejected.begin(), result.rejected.end(), is_it);
+  if (fitted == result.rejected.end()) {
+    const bool found = std::any_of(result.effects.begin(), result.effects.end(),
+                                   [&](const TracedEffect& e) { return is_it(e.chosen); });
+    return first + (found ? ", of which an effect was accepted; no further one was searched"
+                          : "; accepted first, and left out as it gained too little beside the others");
+  }
+  if (fitted->gain <= result.threshold)
+    return fmt::format("{}, {:.1f} when fitted, below the {:.1f} that would be evidence", first, fitted->gain,
+                       result.threshold);
+  return fmt::format("{}, {:.1f} when fitted: {}", first, fitted->gain, refusal(result, *fitted));
+}
+
+std::string verdictText(const TraceResult& result, const Answer& a) {
+  const std::string rest = fmt::format("rms of {} on held-out rows {:.4f}, of the sensors alone {:.4f}",
+                                       name(a.channel), a.rest, a.floor);
+  if (a.verdict == Verdict::NothingMissing)
+    return "nothing missing: the residuals are consistent with noise; " + rest;
+  const std::string found =
+      result.effects.empty()
+          ? ""
+          : fmt::format(
+                "explained by {} effect{}, {}: {} on held-out rows from {:.2f} to {:.2f} noise floors{}",
+                result.effects.size(), result.effects.size() == 1 ? "" : "s", causes(result), name(a.channel),
+                a.base / a.floor, a.rest / a.floor, equalCauses(result));
+  if (a.verdict == Verdict::Explained) return found;
+  if (!a.inapplicable.empty())
+    return "unexplained: the model does not apply: " + a.inapplicable + "; " + rest;
+  const std::string start = found.empty() ? "unexplained: " + rest : "partly " + found;
+  if (!a.strained.empty()) return start + "; " + strainedText(a);
+  if (!a.at_bound.empty())
+    return fmt::format("{}; at a bound of its range: {}", start, fmt::join(a.at_bound, ", "));
+  if (a.strength_scatter + a.stiffness_scatter > 0.0)
+    return fmt::format(
+        "{}; the soil's strength scatters by {:.0f} % and its stiffness by {:.0f} % from {} to {}; {} would "
+        "decide",
+        start, 100.0 * a.strength_scatter, 100.0 * a.stiffness_scatter, a.unit, a.unit, a.measure);
+  const std::string where = a.column.empty()
+                                ? "it follows no column"
+                                : fmt::format("it varies most with {} ({})", a.column, refusal(result));
+  return fmt::format("{}; {}; {} would decide", start, where, a.measure);
+}
+
+std::vector<EffectRole> rolesOf(const TraceResult& result) {
+  std::vector<EffectRole> roles;
+  std::size_t at = result.base.effects.size();
+  for (const TracedEffect& effect : result.effects) {
+    const auto parts = effect.chosen.candidate.parts.size();
+    const bool one = parts == 1 && at < result.refined.effects.size() &&
+                     result.refined.effects[at].name == effect.chosen.candidate.parts.front().name;
+    roles.push_back(one ? roleOf(result.refined, at, result.trial) : EffectRole{});
+    at += parts;
+  }
+  return roles;
+}
+
+std::string roleText(const EffectRole& role) {
+  if (role.adds) return "";
+  if (role.takes_back.empty()) return "adds nothing, the refined model predicts the same without it";
+  return fmt::format("takes back the base's {} and adds nothing in its place",
+                     fmt::join(role.takes_back, ", "));
+}
 
 nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors) {
   nlohmann::ordered_json out = nlohmann::ordered_json::object();
@@ -60,25 +213,21 @@ nlohmann::ordered_json searchedJson(const terramech::TraceResult& r) {
           {"columns_dropped", r.trial.dropped}};
 }
 
-std::string searchedText(const terramech::TraceResult& result) {
-  std::string text;
+void addSearched(Report& report, const terramech::TraceResult& result) {
   if (const terramech::UnsearchedRows& rest = result.unsearched; rest.rows > 0) {
-    text += fmt::format("searched a sample of {} of {} rows; rmse on the {} others (base -> refined):{}\n",
-                        result.trial.rows(), result.trial.rows() + rest.rows, rest.rows,
-                        changeText(rest.base_rmse, rest.refined_rmse));
+    report.paragraph(fmt::format(
+        "searched a sample of {} of {} rows; rmse on the {} others (base -> refined):{}", result.trial.rows(),
+        result.trial.rows() + rest.rows, rest.rows, changeText(rest.base_rmse, rest.refined_rmse)));
   }
   if (const auto& dropped = result.trial.dropped; !dropped.empty()) {
     constexpr std::size_t kShown = 5;
-    text += fmt::format(
-        "{} further columns not searched, those least related to the residuals: {}{}\n", dropped.size(),
+    report.paragraph(fmt::format(
+        "{} further columns not searched, those least related to the residuals: {}{}", dropped.size(),
         fmt::join(dropped.begin(), dropped.begin() + static_cast<long>(std::min(kShown, dropped.size())),
                   ", "),
-        dropped.size() > kShown ? ", ... (--json lists them)" : "");
+        dropped.size() > kShown ? ", ... (--json lists them)" : ""));
   }
-  return text;
 }
-
-using namespace terramech;
 
 /// Named errors by channel as a table, whose first column is `what`; channels without a first error are omitted.
 Table errorTable(const std::string& what,
@@ -105,32 +254,31 @@ nlohmann::ordered_json worse(const LeftOutErrors& part) {
 }  // namespace
 
 std::string leftOutText(const std::vector<LeftOutErrors>& all) {
-  std::string out;
+  Report report("");
   for (const LeftOutErrors& part : all) {
-    out += fmt::format("traced without {} ({} rows): {}\n", part.what, part.rows,
-                       part.effects.empty() ? "no effect" : fmt::format("{}", fmt::join(part.effects, ", ")));
-    out += tableText(errorTable("rmse", {{"base", part.base},
-                                         {"refined", part.refined},
-                                         {"noise floor", part.floor},
-                                         {"regression", part.regression}}),
-                     2);
-    for (const std::string channel : worse(part)) out += "  " + channel + ": refined is worse than base\n";
+    report.paragraph(
+        fmt::format("traced without {} ({} rows): {}", part.what, part.rows,
+                    part.effects.empty() ? "no effect" : fmt::format("{}", fmt::join(part.effects, ", "))));
+    report.table(errorTable("rmse", {{"base", part.base},
+                                     {"refined", part.refined},
+                                     {"noise floor", part.floor},
+                                     {"regression", part.regression}}));
+    for (const std::string channel : worse(part)) report.paragraph(channel + ": refined is worse than base");
   }
-  return out;
+  return report.text();
 }
 
 nlohmann::ordered_json leftOutJson(const std::vector<LeftOutErrors>& all) {
-  auto out = nlohmann::ordered_json::array();
-  for (const LeftOutErrors& part : all)
-    out.push_back({{"left_out", part.what},
-                   {"rows", part.rows},
-                   {"effects", part.effects},
-                   {"base_rmse", errorsJson(part.base)},
-                   {"refined_rmse", errorsJson(part.refined)},
-                   {"worse_than_base", worse(part)},
-                   {"noise_floor", errorsJson(part.floor)},
-                   {"regression_rmse", errorsJson(part.regression)}});
-  return out;
+  return jsonList(all, [](const LeftOutErrors& part) -> nlohmann::ordered_json {
+    return {{"left_out", part.what},
+            {"rows", part.rows},
+            {"effects", part.effects},
+            {"base_rmse", errorsJson(part.base)},
+            {"refined_rmse", errorsJson(part.refined)},
+            {"worse_than_base", worse(part)},
+            {"noise_floor", errorsJson(part.floor)},
+            {"regression_rmse", errorsJson(part.regression)}};
+  });
 }
 
 namespace {
@@ -197,10 +345,9 @@ ordered_json proposalsJson(const std::vector<ProposedRun>& runs) {
 }
 
 ordered_json scoresJson(const std::vector<CauseScore>& scores) {
-  ordered_json all = ordered_json::array();
-  for (const CauseScore& s : scores)
-    all.push_back({{"cause", s.cause}, {"log_likelihood", s.log_likelihood}, {"probability", s.probability}});
-  return all;
+  return jsonList(scores, [](const CauseScore& s) -> ordered_json {
+    return {{"cause", s.cause}, {"log_likelihood", s.log_likelihood}, {"probability", s.probability}};
+  });
 }
 
 std::string proposalText(const std::vector<ProposedRun>& runs, const Trial& trial) {
@@ -271,11 +418,9 @@ ordered_json rivalJson(const Explanation& e) {
 }
 
 ordered_json evidenceJson(const TableTrace& trace, const TracedEffect& effect) {
-  ordered_json rivals = ordered_json::array();
-  for (const Explanation& e : effect.equal) rivals.push_back(rivalJson(e));
   return {{"log_likelihood_gain", 0.5 * effect.chosen.chi2_gain},
           {"gain", effect.chosen.gain},
-          {"alternatives", rivals},
+          {"alternatives", jsonList(effect.equal, rivalJson)},
           {"confounded_with", confounded(trace.result.trial, effect.chosen.candidate.covariate())},
           {"to_tell_apart", separatingMeasurement(trace.result.trial, effect)}};
 }
@@ -293,10 +438,9 @@ ordered_json effectJson(const TableTrace& trace, const TracedEffect& effect, con
   out["adds"] = role.adds;
   out["takes_back"] = role.takes_back;
   out["p_value"] = effect.p_value;
-  out["equal_to"] = ordered_json::array();
-  for (const Explanation& e : effect.equal)
-    out["equal_to"].push_back(
-        {{"name", e.candidate.parts.front().name}, {"covariate", e.candidate.covariate()}});
+  out["equal_to"] = jsonList(effect.equal, [](const Explanation& e) -> ordered_json {
+    return {{"name", e.candidate.parts.front().name}, {"covariate", e.candidate.covariate()}};
+  });
   out["evidence"] = evidenceJson(trace, effect);
   if (const EffectForm* form = findEffect(part.name)) {
     out["formula"] = form->formula;
@@ -309,13 +453,11 @@ ordered_json effectJson(const TableTrace& trace, const TracedEffect& effect, con
 }
 
 ordered_json rejectedJson(const TraceResult& result) {
-  ordered_json out = ordered_json::array();
-  for (const Explanation& e : result.rejected) {
+  return jsonList(result.rejected, [&](const Explanation& e) {
     ordered_json one = rivalJson(e);
     one["reason"] = refusal(result, e);
-    out.push_back(one);
-  }
-  return out;
+    return one;
+  });
 }
 
 double correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
@@ -344,7 +486,7 @@ std::string equalText(const TracedEffect& effect) {
 std::string effectLine(const Trial& trial, const TracedEffect& effect, const EffectRole& role) {
   const Effect& part = effect.chosen.candidate.parts.front();
   std::string line =
-      fmt::format("  {} in {} (covariate {}{})", part.name, name(effect.channel), covariateOf(part),
+      fmt::format("{} in {} (covariate {}{})", part.name, name(effect.channel), covariateOf(part),
                   part.only_column.empty() ? "" : ", only for the value " + part.only_value);
   if (!role.adds) line += ": " + roleText(role);
   if (const EffectForm* form = findEffect(part.name)) {
@@ -363,7 +505,7 @@ std::string effectLine(const Trial& trial, const TracedEffect& effect, const Eff
       "p " + pText(effect.p_value), 0.5 * effect.chosen.chi2_gain);
   if (!effect.equal.empty())
     line += fmt::format("\n    {}: {}", equalText(effect), separatingMeasurement(trial, effect));
-  return line + "\n";
+  return line;
 }
 
 }  // namespace
@@ -435,18 +577,15 @@ ordered_json schemeJson(const HeldOut& held) {
 ordered_json heldOutJson(const TableTrace& trace) {
   ordered_json out = schemeJson(trace.held_out.front());
   out["noise_floor"] = errorsJson(trace.result.noise_floor);
-  ordered_json others = ordered_json::array();
-  for (std::size_t k = 1; k < trace.held_out.size(); ++k) others.push_back(schemeJson(trace.held_out[k]));
-  out["others"] = others;
-  ordered_json ends = ordered_json::array();
-  for (const EndLevel& end : trace.result.ends)
-    ends.push_back({{"column", end.column},
-                    {"end", end.high ? "high" : "low"},
-                    {"rows", end.rows},
-                    {"distance", end.distance},
-                    {"base_rmse", errorsJson(end.base_rmse)},
-                    {"refined_rmse", errorsJson(end.refined_rmse)}});
-  out["end_levels"] = ends;
+  out["others"] = jsonList(std::span(trace.held_out).subspan(1), schemeJson);
+  out["end_levels"] = jsonList(trace.result.ends, [](const EndLevel& end) -> ordered_json {
+    return {{"column", end.column},
+            {"end", end.high ? "high" : "low"},
+            {"rows", end.rows},
+            {"distance", end.distance},
+            {"base_rmse", errorsJson(end.base_rmse)},
+            {"refined_rmse", errorsJson(end.refined_rmse)}};
+  });
   return out;
 }
 
@@ -457,27 +596,24 @@ Table heldOutTable(const std::string& what, const HeldOut& held, const TraceResu
 }
 
 /// Errors at the end levels, predicted from the other levels.
-std::string endLines(const TraceResult& r) {
-  if (r.ends.empty()) return "";
-  std::string out = "held out: end levels, predicted from the others (base -> refined)\n";
-  for (const EndLevel& end : r.ends) {
-    out += fmt::format("  {:26s} {:3d} rows:{}\n", (end.high ? "greatest " : "least ") + end.column, end.rows,
-                       changeText(end.base_rmse, end.refined_rmse));
-  }
-  return out;
+void addEnds(Report& report, const TraceResult& r) {
+  if (!r.ends.empty()) report.paragraph("held out: end levels, predicted from the others (base -> refined)");
+  for (const EndLevel& end : r.ends)
+    report.paragraph(fmt::format("  {:26s} {:3d} rows:{}", (end.high ? "greatest " : "least ") + end.column,
+                                 end.rows, changeText(end.base_rmse, end.refined_rmse)));
 }
 
 ordered_json answerJson(const TraceResult& result, const Answer& a) {
-  ordered_json moved = ordered_json::array();
-  for (const MovedParameter& p : movedSoil(result))
-    moved.push_back({{"name", p.name},
-                     {"value", p.value},
-                     {"prior", p.prior},
-                     {"prior_std", p.prior_std},
-                     {"standard_deviations", p.away()}});
-  ordered_json strained = ordered_json::array();
-  for (const StrainedSensor& s : a.strained)
-    strained.push_back({{"column", s.column}, {"declared", s.declared}, {"fitted", s.fitted}});
+  const auto moved = jsonList(movedSoil(result), [](const MovedParameter& p) -> ordered_json {
+    return {{"name", p.name},
+            {"value", p.value},
+            {"prior", p.prior},
+            {"prior_std", p.prior_std},
+            {"standard_deviations", p.away()}};
+  });
+  const auto strained = jsonList(a.strained, [](const StrainedSensor& s) -> ordered_json {
+    return {{"column", s.column}, {"declared", s.declared}, {"fitted", s.fitted}};
+  });
   return {{"channel", name(a.channel)},
           {"base_rmse", a.base},
           {"rmse", a.rest},
@@ -507,16 +643,14 @@ ordered_json traceJson(const TableTrace& trace) {
   ordered_json effects = ordered_json::array();
   const std::vector<EffectRole> roles = rolesOf(r);
   for (std::size_t k = 0; k < roles.size(); ++k) effects.push_back(effectJson(trace, r.effects[k], roles[k]));
-  ordered_json tests = ordered_json::array();
-  for (std::size_t k = 0; k < r.first_promises.size() && k < 12; ++k) {
-    const Promise& p = r.first_promises[k];
-    const Effect& front = p.candidate.parts.front();
-    tests.push_back({{"what", front.name},
-                     {"covariate", p.candidate.covariate()},
-                     {"channel", name(front.channel)},
-                     {"gain", p.gain},
-                     {"p_value", p.p_value}});
-  }
+  const auto first = std::span(r.first_promises).first(std::min<std::size_t>(12, r.first_promises.size()));
+  const auto tests = jsonList(first, [](const Promise& p) -> ordered_json {
+    return {{"what", p.candidate.parts.front().name},
+            {"covariate", p.candidate.covariate()},
+            {"channel", name(p.candidate.parts.front().channel)},
+            {"gain", p.gain},
+            {"p_value", p.p_value}};
+  });
   return {{"verdict", name(trace.answer.verdict)},
           {"answer", answerJson(r, trace.answer)},
           {"base", {{"rmse", errorsJson(r.base_rmse)}}},
@@ -542,38 +676,6 @@ std::string beyondAxleText(const TableTrace& trace) {
       "{} rows with sinkage at or above the axle are excluded, outside the range of the contact model; rmse "
       "of the refined model on them: {}",
       trace.beyond_axle, errors);
-}
-
-namespace {
-
-std::string movedText(const MovedParameter& p) {
-  return fmt::format(
-      "warning: {} of the soil is fitted {:.1f} standard deviations from its prior ({:.4g}, prior {:.4g} +- "
-      "{:.2g})",
-      p.name, p.away(), p.value, p.prior, p.prior_std);
-}
-
-}  // namespace
-
-std::string traceText(const TableTrace& trace) {
-  const TraceResult& r = trace.result;
-  std::string out =
-      verdictText(r, trace.answer) + "\n" +
-      fmt::format("{}: {} rows used, {} rejected\n", trace.source, trace.rowsUsed(), trace.rejected.size()) +
-      searchedText(r);
-  if (!trace.answer.unstated.empty())
-    out += fmt::format("no standard deviation declared under sensors: in the base file; fitted instead: {}\n",
-                       fmt::join(trace.answer.unstated, ", "));
-  for (const MovedParameter& p : movedSoil(r)) out += movedText(p) + "\n";
-  for (const std::string& name : soilAtBounds(r.refined))
-    out += "warning: " + name + " (soil) is at the bound of its range\n";
-  const std::vector<EffectRole> roles = rolesOf(r);
-  for (std::size_t k = 0; k < roles.size(); ++k) out += effectLine(r.trial, r.effects[k], roles[k]);
-  for (const HeldOut& held : trace.held_out)
-    out += fmt::format("held out: {}\n{}", held.scheme, tableText(heldOutTable("rmse", held, r), 2));
-  out += endLines(r);
-  if (trace.beyond_axle > 0) out += beyondAxleText(trace) + '\n';
-  return out;
 }
 
 namespace {
@@ -606,7 +708,7 @@ Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at
           .series = {left, added}};
 }
 
-void curves(HtmlReport& page, const TraceResult& r, const Eigen::MatrixXd& level,
+void curves(Report& page, const TraceResult& r, const Eigen::MatrixXd& level,
             const Eigen::VectorXd& sinkage) {
   std::vector<Plot> plots;
   std::size_t at = r.base.effects.size();
@@ -617,53 +719,7 @@ void curves(HtmlReport& page, const TraceResult& r, const Eigen::MatrixXd& level
   if (!plots.empty()) page.charts(plots);
 }
 
-// The fitted parameters with their standard deviations.
-std::string sizes(const TracedEffect& effect) {
-  std::string text;
-  for (const FittedNumber& p : fittedNumbers(effect)) {
-    text += fmt::format("{}{} = {:.4g} ± {:.2g}", text.empty() ? "" : "; ", p.name, p.value, p.std);
-    if (p.unit != "-") text += " " + p.unit;
-    if (p.at_bound) text += ", at its bound";
-  }
-  return text;
-}
-
-void effects(HtmlReport& page, const TableTrace& trace) {
-  page.heading("Effects missing from the base model");
-  if (trace.result.effects.empty()) {
-    page.paragraph("No effect found: no candidate gains more than noise would.");
-    return;
-  }
-  Table found{{"effect", "covariate", "channel", "parameters (standard deviation)", "p (all tests)",
-               "log-likelihood gain"}},
-      forms{{"effect", "form", "equal causes", "how to discriminate"}};
-  const std::vector<EffectRole> roles = rolesOf(trace.result);
-  for (std::size_t k = 0; k < roles.size(); ++k) {
-    const TracedEffect& e = trace.result.effects[k];
-    const Effect& part = e.chosen.candidate.parts.front();
-    const EffectForm* form = findEffect(part.name);
-    found.push_back({part.name, covariateOf(part) + (part.only_column.empty() ? "" : " = " + part.only_value),
-                     name(e.channel), sizes(e), pText(e.p_value),
-                     fmt::format("{:.1f}", 0.5 * e.chosen.chi2_gain)});
-    const std::string role = roleText(roles[k]);
-    forms.push_back({part.name,
-                     std::string(form ? form->formula : "curve fitted to the residual") +
-                         (role.empty() ? "" : "; it " + role),
-                     e.equal.empty() ? "" : equalText(e), separatingMeasurement(trace.result.trial, e)});
-  }
-  page.table(found);
-  page.table(forms);
-}
-
-// Errors on the rows of the fit and on those held out, in a table each.
-void errors(HtmlReport& page, const TableTrace& trace) {
-  const TraceResult& r = trace.result;
-  page.paragraph("Root mean square errors. The noise floor is the error from sensor noise alone.");
-  page.table(heldOutTable("rows of the fit", {"", r.base_rmse, r.refined_rmse}, r));
-  for (const HeldOut& held : trace.held_out) page.table(heldOutTable("held out: " + held.scheme, held, r));
-}
-
-void tests(HtmlReport& page, const TraceResult& r) {
+void tests(Report& page, const TraceResult& r) {
   page.heading("Gain of each candidate over the base model");
   page.paragraph(fmt::format(
       "The strongest of {} candidates, each to first order: log-likelihood gained on held-out rows. p: "
@@ -679,33 +735,53 @@ void tests(HtmlReport& page, const TraceResult& r) {
   page.table(rows);
 }
 
-}  // namespace
-
-std::string tracePage(const TableTrace& trace) {
-  const TraceResult& r = trace.result;
-  HtmlReport page("Residuals of " + std::filesystem::path(trace.source).filename().string());
-  page.paragraph("Verdict: " + verdictText(r, trace.answer) + ".");
-  for (const MovedParameter& p : movedSoil(r)) page.paragraph(movedText(p) + ".");
-  page.paragraph(fmt::format("{} rows used, {} rejected.", trace.rowsUsed(), trace.rejected.size()));
-  if (const std::string searched = searchedText(r); !searched.empty()) page.paragraph(searched);
-  if (trace.beyond_axle > 0) page.paragraph(beyondAxleText(trace) + ".");
-  terramech::SolvedContacts solved;
+// Charts of each channel over slip and of each effect.
+void addCharts(Report& report, const TraceResult& r) {
+  SolvedContacts solved;
   const Eigen::MatrixXd base = predictRows(r.base, r.trial, solved);
   const Eigen::MatrixXd level = predictRows(r.refined, r.trial, solved);
   Eigen::VectorXd sinkage(level.rows());
   for (int row = 0; row < r.trial.rows(); ++row)
     sinkage[row] = level(row, 1) * r.trial.denominator(row, Channel::Sinkage);
-  errors(page, trace);
   std::vector<NamedPredictions> predictions{{"base", base}};
   if (!r.effects.empty()) predictions.emplace_back("refined", level);  // otherwise the same
   std::vector<Plot> plots;
   for (Channel c : kAllChannels)
     if (r.trial.has(c)) plots.push_back(overSlip(c, r.trial, predictions));
-  page.charts(plots);
-  curves(page, r, level, sinkage);
-  effects(page, trace);
-  tests(page, r);
-  return page.html();
+  report.charts(plots);
+  curves(report, r, level, sinkage);
+}
+
+}  // namespace
+
+Report traceReport(const TableTrace& trace, bool page) {
+  const TraceResult& r = trace.result;
+  Report report("Residuals of " + std::filesystem::path(trace.source).filename().string());
+  report.paragraph(verdictText(r, trace.answer));
+  report.paragraph(
+      fmt::format("{}: {} rows used, {} rejected", trace.source, trace.rowsUsed(), trace.rejected.size()));
+  addSearched(report, r);
+  if (!trace.answer.unstated.empty())
+    report.paragraph(
+        fmt::format("no standard deviation declared under sensors: in the base file; fitted instead: {}",
+                    fmt::join(trace.answer.unstated, ", ")));
+  for (const MovedParameter& p : movedSoil(r))
+    report.paragraph(fmt::format(
+        "warning: {} of the soil is fitted {:.1f} standard deviations from its prior ({:.4g}, prior {:.4g} "
+        "+- {:.2g})",
+        p.name, p.away(), p.value, p.prior, p.prior_std));
+  for (const std::string& name : soilAtBounds(r.refined))
+    report.paragraph("warning: " + name + " (soil) is at the bound of its range");
+  if (page) addCharts(report, r);
+  const std::vector<EffectRole> roles = rolesOf(r);
+  for (std::size_t k = 0; k < roles.size(); ++k)
+    report.paragraph(effectLine(r.trial, r.effects[k], roles[k]));
+  report.table(heldOutTable("rmse of the fit", {"", r.base_rmse, r.refined_rmse}, r));
+  for (const HeldOut& held : trace.held_out) report.table(heldOutTable("held out: " + held.scheme, held, r));
+  addEnds(report, r);
+  if (trace.beyond_axle > 0) report.paragraph(beyondAxleText(trace));
+  if (page) tests(report, r);
+  return report;
 }
 
 }  // namespace talus::cli

@@ -398,14 +398,6 @@ std::vector<WorldLine> drivesOf(const BenchmarkPlan& plan, const std::vector<Ben
   return lines;
 }
 
-std::string asText(const std::vector<WorldLine>& lines) {
-  return lines.empty() ? "" : "\n" + tableText(worldRows(lines));
-}
-
-std::string asText(const std::vector<BenchmarkLine>& lines) {
-  return tableText(lineRows(lines));
-}
-
 nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives) {
   auto array = nlohmann::ordered_json::array();
   for (const BenchmarkLine& line : lines) {
@@ -430,10 +422,10 @@ std::vector<Plot> gapsOverTime(const BenchmarkPlan& plan, const std::vector<Benc
   return plots;
 }
 
-std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
-  HtmlReport page("Planner benchmark");
+Report benchReport(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& runs) {
+  Report page("Planner benchmark");
   if (const std::size_t asked = planner::jobsOf(plan).size(); runs.size() < asked)
-    page.paragraph(fmt::format("Cancelled after {} of {} runs.", runs.size(), asked));
+    page.paragraph(fmt::format("cancelled: {} of {} runs", runs.size(), asked));
   const std::vector<BenchmarkLine> lines = compared(plan, runs);
   page.paragraph(fastestText(lines));
   std::vector<Plot> plots = gapsOverTime(plan, runs);
@@ -445,7 +437,10 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
     page.heading("Simulated drives over the true slip");
     page.table(drives);
   }
-  page.charts({first, plots.end()});
+  page.charts({first, plots.end()},
+              "The curves are those of the first seed of each planner whose final route passes the check. "
+              "Intermediate costs are those that the planner reports; none is drawn below the cost of the "
+              "final route.");
   page.paragraph(fmt::format(
       "{} cases, {} runs per case and planner, time limit {} s per run, each run in its own process. Gap: "
       "relative to the known optimum, or to the best of all runs. Invalid: the independent check rejects the "
@@ -453,11 +448,7 @@ std::string asPage(const BenchmarkPlan& plan, const std::vector<BenchmarkRun>& r
       "with the field's "
       "route, those with :cold with nothing.",
       plan.cases.size(), plan.seeds, plan.time_limit_s));
-  page.paragraph(
-      "The curves are those of the first seed of each planner whose final route passes the check. "
-      "Intermediate costs are those that "
-      "the planner reports; none is drawn below the cost of the final route.");
-  return page.html();
+  return page;
 }
 
 }  // namespace talus::cli

@@ -65,19 +65,14 @@ struct WorldLine {
 std::vector<WorldLine> drivesOf(const planner::BenchmarkPlan& plan,
                                 const std::vector<planner::BenchmarkRun>& runs);
 
-/// Returns a table with 95 % intervals of the fraction of drives that reached the goal; empty if there are no
-/// rows.
-std::string asText(const std::vector<WorldLine>& lines);
-
 /// Returns plots of the gap over time for the first cases, with one curve per planner, of its first seed, if
 /// its route passes the check.
 std::vector<Plot> gapsOverTime(const planner::BenchmarkPlan& plan,
                                const std::vector<planner::BenchmarkRun>& runs);
 
-/// Return the comparison as a table for a terminal, as JSON, and as an HTML page with the cost over time of
-/// each case.
-std::string asText(const std::vector<BenchmarkLine>& lines);
+/// Return the comparison as JSON, and as a report with 95 % intervals of the fraction of drives that reached the goal and
+/// the cost over time of each case.
 nlohmann::ordered_json asJson(const std::vector<BenchmarkLine>& lines, const std::vector<WorldLine>& drives);
-std::string asPage(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs);
+Report benchReport(const planner::BenchmarkPlan& plan, const std::vector<planner::BenchmarkRun>& runs);
 
 }  // namespace talus::cli

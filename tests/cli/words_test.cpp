@@ -119,7 +119,7 @@ TEST(Words, MessagesContainNoFigurativeWords) {
 }
 
 TEST(Words, PagesAndDocumentsContainNoFigurativeWords) {
-  for (const fs::path& file : filesBelow("cli/page", {".js", ".html"})) expectPlainLines(file);
+  for (const fs::path& file : filesBelow("cli", {".js", ".html", ".yaml"})) expectPlainLines(file);
   for (const std::string folder :
        {"docs", "common", "terramech", "maps", "costmap", "planner", "cli", "examples", "tests"})
     for (const fs::path& file : filesBelow(folder, {".md"})) expectPlainLines(file);

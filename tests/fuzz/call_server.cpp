@@ -16,7 +16,6 @@
 #include <unistd.h>
 
 #include <talus/cli/app/commands.hpp>
-#include <talus/cli/commands/program.hpp>
 
 namespace {
 

@@ -7,7 +7,6 @@
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/ground/ground_options.hpp>
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/common/common.hpp>
 #include <talus/maps/maps.hpp>

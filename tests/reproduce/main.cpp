@@ -1,6 +1,5 @@
 // talus-reproduce: takes the words of `talus` with its one call `reproduce`. `talus reproduce` starts it.
-#include <talus/cli/commands/program.hpp>
-#include <talus/cli/commands/reproduce_command.hpp>
+#include <talus/cli/app/commands.hpp>
 
 #include "validation_page.hpp"
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <talus/cli/app/commands.hpp>
 #include <talus/cli/app/context.hpp>
-#include <talus/cli/commands/reproduce_command.hpp>
 #include <talus/common/common.hpp>
 #include <talus/common/output_file.hpp>
 

@@ -27,47 +27,39 @@ TEST(Campaign, OutcomesAreInJobOrderIncludingFailures) {
     bool backwards = false;
     const ProgressMonitor watch{.progress = [&](double share) { backwards |= share < last, last = share; },
                                 .stop = {}};
-    const auto outcomes = campaign.run(
-        40,
+    const auto results = campaign.results(
+        {.count = 40, .workers = workers},
         [&ran](std::size_t i) {
           ++ran;
           if (i % 7 == 3) throw std::runtime_error("job " + std::to_string(i) + " is bad");
           return std::to_string(i * i);
         },
-        watch, workers);
-    ASSERT_EQ(outcomes.size(), 40U);
+        watch);
+    ASSERT_TRUE(results);
+    ASSERT_EQ(results->size(), 40U);
     EXPECT_EQ(ran, 40);
     EXPECT_FALSE(backwards);
     if (workers == 1) {
       EXPECT_EQ(last, 1.0);
     }
-    for (std::size_t i = 0; i < 40; ++i) {
-      EXPECT_EQ(outcomes[i].failed, i % 7 == 3);
-      EXPECT_FALSE(outcomes[i].stopped);
-      EXPECT_EQ(outcomes[i].text,
-                i % 7 == 3 ? "job " + std::to_string(i) + " is bad" : std::to_string(i * i));
-    }
+    for (std::size_t i = 0; i < 40; ++i)
+      EXPECT_EQ(results->at(i), i % 7 == 3 ? "job " + std::to_string(i) + " is bad" : std::to_string(i * i));
   }
 }
 
 // Property: jobs completed before a stop keep their results; a job that returns an empty text after a stop,
-// and all later jobs, are marked as stopped.
+// and all later jobs, have no result.
 TEST(Campaign, StopKeepsCompletedJobs) {
   const Campaign campaign;
   std::stop_source source;
-  const auto outcomes = campaign.run(
-      6,
+  const auto results = campaign.results(
+      {.count = 6},
       [&source](std::size_t i) {
         if (i == 2) source.request_stop();
         return i == 2 ? std::string() : "done";
       },
       ProgressMonitor{.progress = {}, .stop = source.get_token()});
-  ASSERT_EQ(outcomes.size(), 6U);
-  for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_EQ(outcomes[i].stopped, i >= 2) << i;
-    EXPECT_EQ(outcomes[i].failed, i >= 2) << i;
-    EXPECT_EQ(outcomes[i].text, i >= 2 ? "cancelled" : "done");
-  }
+  EXPECT_EQ(results, (JobResults{{0, "done"}, {1, "done"}}));
 }
 
 /// Result of `talus plan --pairs`: exit status, result table, and text on stderr.

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <talus/cli/ground/mission.hpp>
+#include <talus/cli/app/texts.hpp>
 
 #include "bad_input.hpp"
 #include "run_program.hpp"
@@ -67,7 +67,7 @@ TEST(InitCommand, LayersBesideTheMapAreTaken) {
 // Property: a created mission file contains every key that the reader accepts.
 TEST(InitCommand, CreatedMissionHasEveryKey) {
   const std::string text = runTalus({"help", "missions"}).out;
-  for (const auto keys : {missionKeys(), missionMapKeys(), thresholdKeys()})
+  for (const auto keys : {keysOf("Mission"), keysOf("Mission: maps"), keysOf("Mission: thresholds")})
     for (const terramech::FileKey& key : keys)
       EXPECT_THAT(text, HasSubstr(std::string(key.name) + ":")) << key.name;
 }

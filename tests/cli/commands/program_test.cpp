@@ -2,7 +2,7 @@
 
 #include <sys/wait.h>
 
-#include <talus/cli/commands/program.hpp>
+#include <talus/cli/app/commands.hpp>
 
 #include "run_program.hpp"
 

@@ -39,14 +39,14 @@ TEST(Plot, ReadingsThatCoverEachOtherAreOmitted) {
     readings.x.push_back(std::fmod(0.618 * i, 1.0));
     readings.y.push_back(i == 7 ? std::nan("") : std::sin(i));
   }
-  HtmlReport report("many");
+  Report report("many");
   report.charts({{.title = "", .x = {}, .y = {}, .series = {readings}}});
   EXPECT_LT(report.html().size() - reportTemplate().size(), 700'000U);
 }
 
 TEST(Plot, ColumnsOfDifferentLengthAreRejected) {
   const Plot plot{.title = "", .x = {}, .y = {}, .series = {{.name = "a", .x = {1.0, 2.0}, .y = {1.0}}}};
-  EXPECT_REFUSED(HtmlReport("a").charts({plot}), std::invalid_argument,
+  EXPECT_REFUSED(Report("a").charts({plot}), std::invalid_argument,
                  "x and y have 2 and 1 values, must be as many");
 }
 
@@ -55,7 +55,7 @@ TEST(Plot, ChartsAreDrawnInABrowser) {
   TALUS_REQUIRE(test::installed("chromium"), "chromium is not installed");
   Plot logarithmic = example();
   logarithmic.x.logarithmic = logarithmic.y.logarithmic = true;
-  HtmlReport report("charts");
+  Report report("charts");
   report.charts({example(), logarithmic, {.title = "", .x = {}, .y = {}, .series = {{.x = {}, .y = {}}}}});
   const Shown shown = show(report.html());
   EXPECT_TRUE(ready(shown)) << shown.console;
@@ -64,8 +64,8 @@ TEST(Plot, ChartsAreDrawnInABrowser) {
 
 using testing::Not;
 
-TEST(HtmlReport, TextIsEscapedAndFiguresEmbedded) {
-  HtmlReport report("a < b");
+TEST(Report, TextIsEscapedAndFiguresEmbedded) {
+  Report report("a < b");
   report.table({{"name", "value"}, {"x & y", "1.5"}});
   report.charts({{.title = "Pull", .x = {}, .y = {}, .series = {{.x = {0.0, 1.0}, .y = {0.0, 1.0}}}}});
   EXPECT_THAT(report.html(), HasSubstr("<h1>a &lt; b</h1>"));
@@ -74,9 +74,9 @@ TEST(HtmlReport, TextIsEscapedAndFiguresEmbedded) {
 }
 
 // Property: text from the user is never interpreted as markup, anywhere on the page.
-TEST(HtmlReport, UserTextIsNeverMarkup) {
+TEST(Report, UserTextIsNeverMarkup) {
   const std::string hostile = "<script>alert(\"1\")</script>";
-  HtmlReport report(hostile);
+  Report report(hostile);
   report.heading(hostile);
   report.paragraph(hostile);
   report.table({{hostile}, {hostile}});

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include <talus/cli/ground/mission.hpp>
-#include <talus/cli/ground/plan_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/terramech/terramech_io.hpp>
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <site_map.hpp>
 
-#include <talus/cli/ground/plan_options.hpp>
+#include <talus/cli/ground/mission.hpp>
 
 namespace talus::cli {
 

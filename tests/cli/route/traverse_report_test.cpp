@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <talus/cli/app/campaign.hpp>
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/route/traverse_report.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
@@ -73,8 +74,10 @@ planner::WorldResult numbered(std::size_t b, std::size_t i) {
 TEST(DriveWorlds, ResultsAreInOrderForAnyWorkerCount) {
   const Campaign campaign;
   for (const std::size_t workers : {1U, 3U}) {
-    const WorldCount count{.beliefs = 2, .worlds = 7, .workers = workers};
-    const SimulatedWorlds driven = simulatedWorlds(count, worldJobs(count, numbered, Part(""), campaign, {}));
+    const auto jobs =
+        campaign.results({.count = 14, .workers = workers},
+                         [](std::size_t k) { return jsonText(asJson(numbered(k / 7, k % 7))); }, {});
+    const SimulatedWorlds driven = simulatedWorlds(2, 7, jobs.value());
     ASSERT_EQ(driven.results.size(), 2U);
     EXPECT_TRUE(driven.failures.empty());
     for (std::size_t b = 0; b < 2; ++b) {
@@ -94,12 +97,12 @@ TEST(DriveWorlds, ResultsAreInOrderForAnyWorkerCount) {
 
 TEST(DriveWorlds, FailedWorldIsReportedAndExcludedUnderEveryBelief) {
   const Campaign campaign;
-  const auto world = [](std::size_t b, std::size_t i) {
-    if (b == 1 && i == 2) throw std::domain_error("no such ground");
-    return numbered(b, i);
+  const auto world = [](std::size_t k) {
+    if (k == 6) throw std::domain_error("no such ground");
+    return jsonText(asJson(numbered(k / 4, k % 4)));
   };
-  const WorldCount count{.beliefs = 2, .worlds = 4, .workers = 2};
-  const SimulatedWorlds driven = simulatedWorlds(count, worldJobs(count, world, Part(""), campaign, {}));
+  const SimulatedWorlds driven =
+      simulatedWorlds(2, 4, campaign.results({.count = 8, .workers = 2}, world, {}).value());
   ASSERT_EQ(driven.failures.size(), 1U);
   EXPECT_EQ(driven.failures[0].world, 2U);
   EXPECT_EQ(driven.failures[0].reason, "no such ground");

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include <talus/cli/soil/trace_answer.hpp>
+#include <talus/cli/soil/trace_report.hpp>
 #include <talus/terramech/terramech_io.hpp>
 
 namespace talus::cli {
