@@ -23,28 +23,6 @@ Problem problem(MapPointer map, maps::Point start, maps::Point goal) {
   return made;
 }
 
-// Property: routes over random maps satisfy every constraint and cost at most as much as the grid route;
-// NoRoute is returned exactly if a flood fill of the grid does not reach the goal.
-TEST(FieldPlanner, RoutesOnRandomMapsAreValidAndNoRouteIsExact) {
-  int found = 0, none = 0;
-  for (unsigned seed = 1; seed <= 60; ++seed) {
-    const auto map = randomMap({.width = 40, .height = 30, .seed = seed, .blocked = 0.3, .roughness = 0.2});
-    FieldPlanner planner;
-    const Plan plan = planner.plan(problem(map, {2.3, 2.7}, {36.2, 27.9}));
-    if (plan.status == RouteStatus::Found) {
-      ++found;
-      EXPECT_TRUE(violations(*map, plan.points).empty()) << seed;
-      EXPECT_NEAR(plan.cost_J, MotionCost(map).along(plan.points), 1e-9 * plan.cost_J);
-      EXPECT_LE(plan.lower_bound_J, plan.cost_J);
-    } else {
-      ++none;
-      EXPECT_FALSE(plan.reason.empty());
-    }
-  }
-  EXPECT_GT(found, 5);
-  EXPECT_GT(none, 5);
-}
-
 TEST(FieldPlanner, FailureNamesItsReason) {
   const auto map = drawn({"..#..", "..#..", "..#?."});
   FieldPlanner planner;

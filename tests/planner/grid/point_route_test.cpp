@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <talus/common/common.hpp>
-#include <talus/planner/bound/lower_bound.hpp>
 #include <talus/planner/check/route_check.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/point_route.hpp>
@@ -16,33 +15,6 @@ namespace point_route_test {
 
 using testing::drawn;
 using testing::randomBand;
-using testing::randomMap;
-
-// Property: the route is allowed from end to end, costs at least the lower bound, and at most 2 % more than
-// the refined route of the grid.
-TEST(PointRoute, CostIsWithinTwoPercentOfTheRefinedRoute) {
-  int found = 0;
-  for (unsigned seed = 1; seed <= 30; ++seed) {
-    const auto map = randomMap({.width = 14, .height = 12, .seed = seed, .blocked = 0.15, .roughness = 0.2});
-    const MotionCost cost(map);
-    const Segment places{{0.5, 0.5}, {13.4, 11.3}};
-    if (!cost.allowed(places.from) || !cost.allowed(places.to)) continue;
-    const Polyline route = pointRoute(cost, places, 0.0, kInfinity);
-    const Plan other = FieldPlanner().plan({.map = map, .start = places.from, .goal = places.to});
-    if (other.status == RouteStatus::Found) {
-      ASSERT_FALSE(route.empty()) << seed;
-      EXPECT_LE(cost.along(route), 1.02 * other.cost_J) << seed;
-    }
-    if (route.empty()) continue;
-    ++found;
-    EXPECT_EQ(route.front(), places.from);
-    EXPECT_EQ(route.back(), places.to);
-    EXPECT_TRUE(violations(*map, route).empty()) << seed;
-    EXPECT_GE(cost.along(route), (1.0 - 1e-9) * LowerBound()(map, places, 0.0)) << seed;
-    EXPECT_TRUE(pointRoute(cost, places, 0.0, 0.5 * cost.along(route)).empty()) << "nothing half as dear";
-  }
-  EXPECT_GT(found, 8);
-}
 
 TEST(PointRoute, RouteEndsWithinTheTolerance) {
   const MotionCost cost(drawn({"......#", "......#", "......."}));

@@ -60,20 +60,6 @@ TEST(AnyAngle, RouteRefractsByTheLawOfSnell) {
   EXPECT_NEAR(cost.along(route), best, 5e-4 * best);
 }
 
-// Property: the cost never increases, the ends are kept, and the route is allowed.
-TEST(AnyAngle, CostNeverIncreases) {
-  for (unsigned seed = 1; seed <= 10; ++seed) {
-    const MotionCost cost(
-        randomMap({.width = 40, .height = 40, .seed = seed, .blocked = 0.0, .roughness = 0.1}));
-    const std::vector<maps::Point> grid{{1.5, 1.5}, {20.5, 1.5}, {20.5, 20.5}, {38.5, 38.5}};
-    const double before = cost.along(grid);
-    const auto route = Refiner()(cost, grid);
-    EXPECT_LT(cost.along(route), before);
-    EXPECT_EQ(route.front(), grid.front());
-    EXPECT_EQ(route.back(), grid.back());
-  }
-}
-
 // Property: the refined route depends neither on the number of threads nor on kept results.
 TEST(AnyAngle, RouteIsIndependentOfThreadsAndKeptResults) {
   const MotionCost cost(randomMap({.width = 500, .height = 40, .seed = 3, .blocked = 0.0, .roughness = 0.1}));
