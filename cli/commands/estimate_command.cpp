@@ -151,44 +151,51 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
   return json;
 }
 
-std::string runningText(const SoilEstimate& e) {
-  if (e.running.empty()) return {};
-  std::string text = "  line     c kPa     std   phi deg     std    K mm\n";
+Table runningTable(const SoilEstimate& e) {
+  Table table{{"line", "c kPa", "std", "phi deg", "std", "K mm"}};
   for (const RunningSoil& r : e.running) {
-    if (std::isnan(r.cohesion_Pa)) {
-      text += fmt::format("{:6}  too few rows so far\n", r.line);
-      continue;
-    }
-    text +=
-        fmt::format("{:6}  {:8.3f}  {:6.3f}  {:8.2f}  {:6.2f}  {:6.2f}\n", r.line, 1e-3 * r.cohesion_Pa,
-                    1e-3 * std::sqrt(r.covariance(0, 0)), r.friction_angle_rad / kDegree,
-                    frictionStd_rad(r.covariance, r.friction_angle_rad) / kDegree, 1e3 * r.shear_modulus_m);
+    table.push_back({std::to_string(r.line)});
+    for (const double value :
+         {1e-3 * r.cohesion_Pa, 1e-3 * std::sqrt(r.covariance(0, 0)), r.friction_angle_rad / kDegree,
+          frictionStd_rad(r.covariance, r.friction_angle_rad) / kDegree, 1e3 * r.shear_modulus_m})
+      table.back().push_back(std::isfinite(value) ? fmt::format("{:.3f}", value) : "-");
   }
-  return text + '\n';
+  return table;
 }
 
-std::string textOf(const SoilEstimate& e) {
-  std::string text = runningText(e);
-  if (std::isfinite(e.cohesion_Pa)) {
-    text += fmt::format("cohesion        {:9.3f} kPa  +- {:.3f}\n", 1e-3 * e.cohesion_Pa,
-                        1e-3 * std::sqrt(e.covariance(0, 0)));
-    text += fmt::format("friction angle  {:9.2f} deg  +- {:.2f}\n", e.friction_angle_rad / kDegree,
-                        frictionStd_rad(e.covariance, e.friction_angle_rad) / kDegree);
-  }
-  if (std::isfinite(e.shear_modulus_m))
-    text += fmt::format("shear modulus   {:9.2f} mm\n", 1e3 * e.shear_modulus_m);
-  if (std::isfinite(e.sinkage_exponent)) text += fmt::format("exponent n      {:9.3f}\n", e.sinkage_exponent);
-  text += soilsText(e);
+// The known parameters with their standard deviations.
+Table soilTable(const SoilEstimate& e) {
+  Table table{{"quantity", "value", "standard deviation"}};
+  const auto add = [&](const std::string& name, double value, const char* format, double std = NAN) {
+    const auto text = [&](double v) {
+      return std::isfinite(v) ? fmt::format(fmt::runtime(format), v) : std::string();
+    };
+    if (std::isfinite(value)) table.push_back({name, text(value), text(std)});
+  };
+  add("cohesion [kPa]", 1e-3 * e.cohesion_Pa, "{:.3f}", 1e-3 * std::sqrt(e.covariance(0, 0)));
+  add("friction angle [deg]", e.friction_angle_rad / kDegree, "{:.2f}",
+      frictionStd_rad(e.covariance, e.friction_angle_rad) / kDegree);
+  add("shear modulus [mm]", 1e3 * e.shear_modulus_m, "{:.2f}");
+  add("exponent n", e.sinkage_exponent, "{:.3f}");
   for (const auto& plate : e.plates)
-    text += fmt::format("k at b {:5.1f} mm {:9.3g} N/m^(n+2)\n", 1e3 * plate.plate_width_m,
-                        plate.sinkage_modulus);
-  if (e.cohesive_modulus) text += fmt::format("k_c             {:9.3g} N/m^(n+1)\n", *e.cohesive_modulus);
-  if (e.frictional_modulus) text += fmt::format("k_phi           {:9.3g} N/m^(n+2)\n", *e.frictional_modulus);
-  for (std::size_t k = 0; k < e.class_names.size(); ++k) {
-    text += fmt::format("{:15} {:9.3f}\n", e.class_names[k], e.posterior->class_probabilities[k]);
-  }
-  if (!e.effects.empty()) text += fmt::format("effects         {}\n", fmt::join(e.effects, ", "));
-  return text + fmt::format("rows            {} used, {} rejected\n", e.rows_used, e.rejected.size());
+    add(fmt::format("k at b {:.1f} mm [N/m^(n+2)]", 1e3 * plate.plate_width_m), plate.sinkage_modulus,
+        "{:.3g}");
+  add("k_c [N/m^(n+1)]", e.cohesive_modulus.value_or(NAN), "{:.3g}");
+  add("k_phi [N/m^(n+2)]", e.frictional_modulus.value_or(NAN), "{:.3g}");
+  for (std::size_t k = 0; k < e.class_names.size(); ++k)
+    add(e.class_names[k], e.posterior->class_probabilities[k], "{:.3f}");
+  return table;
+}
+
+Report reportOf(const EstimateCommand& options, const SoilEstimate& e) {
+  Report report("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
+  if (!e.running.empty()) report.table(runningTable(e));
+  report.table(soilTable(e));
+  if (const std::string soils = soilsText(e); !soils.empty()) report.paragraph(soils);
+  if (!e.effects.empty()) report.paragraph(fmt::format("effects {}", fmt::join(e.effects, ", ")));
+  report.paragraph(
+      fmt::format("method {}: {} rows used, {} rejected", options.method, e.rows_used, e.rejected.size()));
+  return report;
 }
 
 Plot strengthPlot(const SoilEstimate& e) {
@@ -244,15 +251,7 @@ std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e
 
 void writePage(const EstimateCommand& options, const SoilEstimate& e,
                const std::vector<std::string>& warnings) {
-  Report page("Soil estimated from " + std::filesystem::path(options.table.path).filename().string());
-  page.paragraph(
-      fmt::format("Method {}, {} rows used, {} rejected.", options.method, e.rows_used, e.rejected.size()));
-  page.table({{"quantity", "value", "standard deviation"},
-              {"cohesion [kPa]", fmt::format("{:.3f}", 1e-3 * e.cohesion_Pa),
-               fmt::format("{:.3f}", 1e-3 * std::sqrt(e.covariance(0, 0)))},
-              {"tan(friction angle)", fmt::format("{:.4f}", e.tan_friction),
-               fmt::format("{:.4f}", std::sqrt(e.covariance(1, 1)))},
-              {"shear modulus [mm]", fmt::format("{:.2f}", 1e3 * e.shear_modulus_m), ""}});
+  Report page = reportOf(options, e);
   for (const std::string& text : warnings) page.paragraph("Warning: " + text + ".");
   std::vector<Plot> plots = fitPlots(options, e);
   if (!e.points.empty()) plots.push_back(strengthPlot(e));
@@ -286,7 +285,7 @@ int run(const EstimateCommand& asked, Context& context) {
   Json json = jsonOf(options.method, estimate);
   json["applies"] = applies.applies;
   json["applies_reason"] = applies.reason;
-  context.answer(json, textOf(estimate));
+  context.answer(json, reportOf(options, estimate).text());
   return applies.applies ? Exit::kDone : Exit::kNo;
 }
 

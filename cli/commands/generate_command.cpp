@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <regex>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -40,19 +41,13 @@ constexpr const char* kMartianSoils = R"(terrain_classes:
 
 // Parses a size in cells, "512" or "512x400".
 std::pair<int, int> parseSize(const std::string& text) {
-  const auto refuse = [&]() -> std::pair<int, int> {
-    throw InputError(
-        {"--size " + text, "is not a size in cells", "write N or WIDTHxHEIGHT, 8 to 20000 each"});
-  };
-  const auto number = [&](const std::string& word) {
-    const bool digits =
-        !word.empty() && word.size() <= 5 && word.find_first_not_of("0123456789") == word.npos;
-    const int n = digits ? std::stoi(word) : 0;
-    return n >= 8 && n <= 20000 ? n : refuse().first;
-  };
-  const std::size_t cross = text.find('x');
-  if (cross == text.npos) return {number(text), number(text)};
-  return {number(text.substr(0, cross)), number(text.substr(cross + 1))};
+  static const std::regex size(R"((\d{1,5})(x(\d{1,5}))?)");
+  std::smatch found;
+  if (std::regex_match(text, found, size)) {
+    const int width = std::stoi(found[1]), height = found[3].matched ? std::stoi(found[3]) : width;
+    if (std::min(width, height) >= 8 && std::max(width, height) <= 20000) return {width, height};
+  }
+  throw InputError({"--size " + text, "is not a size in cells", "write N or WIDTHxHEIGHT, 8 to 20000 each"});
 }
 
 // Adds a suffix to the file name: site.tif becomes site_classes.tif.

@@ -31,11 +31,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using planner::RouteStatus;
 
-// plan_s includes proof_s.
-struct Timing {
-  double load_s, costmap_s, plan_s, proof_s;
-};
-
 Planner plannerOf(const PlanOptions& options, const Context& context) {
   const bool plugin = !options.plugin.empty();
   PlannerSettings settings{.planner = plugin && options.planner == "field" ? std::string() : options.planner,
@@ -83,13 +78,6 @@ std::string goalText(const PlanOptions& options, const Route& route) {
                                          options.goals[route.goal], route.goal + 1, options.goals.size()));
 }
 
-std::string planText(const Route& route, const Timing& seconds) {
-  const std::string proof = seconds.proof_s > 0.0 ? fmt::format(" (proof {:.3f} s)", seconds.proof_s) : "";
-  return summaryText(route) +
-         summaryLine("run time", fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s{}",
-                                             seconds.load_s, seconds.costmap_s, seconds.plan_s, proof));
-}
-
 int exitOf(RouteStatus status) {
   switch (status) {
     case RouteStatus::Found:
@@ -121,7 +109,7 @@ struct Planned {
   Ground ground;  // for large maps the overview
   PlanRequest request;
   Route route;
-  double plan_s = 0.0;
+  double plan_s = 0.0;                    // includes the proof
   maps::Raster<std::uint32_t> picture{};  // of the ground, read before planning; empty: none
 };
 
@@ -142,6 +130,15 @@ void writeFiles(const PlanOptions& options, const Planned& planned, const Contex
   addRoute(scene, route);
   addProvenance(scene, origin);
   saveScene(scene, options.html, options.png);
+}
+
+std::string planText(const Planned& planned) {
+  const Route& route = planned.route;
+  const std::string proof = route.proof_s > 0.0 ? fmt::format(" (proof {:.3f} s)", route.proof_s) : "";
+  return summaryText(route) +
+         summaryLine("run time",
+                     fmt::format("load {:.3f} s, costmap {:.3f} s, plan {:.3f} s{}", planned.ground.load_s,
+                                 planned.ground.build_s, planned.plan_s, proof));
 }
 
 // Writes the cells outside of which no route is within the stated excess over the cost of the route.
@@ -335,10 +332,6 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
   if (route.status != RouteStatus::Found) return refuse(route, context);
   if (options.corridor_percent > 0.0) writeCorridor(options, planned, context);
   writeFiles(options, planned, context);
-  const Timing seconds{.load_s = planned.ground.load_s,
-                       .costmap_s = planned.ground.build_s,
-                       .plan_s = planned.plan_s,
-                       .proof_s = route.proof_s};
   if (context.json) {
     nlohmann::ordered_json risk;
     if (planned.request.risk_limit) {
@@ -348,13 +341,13 @@ int finish(const PlanOptions& options, Planned& planned, const Context& context)
     auto json = summaryJson(route);
     if (options.goals.size() > 1) json["goal"] = options.goals[route.goal];
     if (!risk.is_null()) json["risk"] = std::move(risk);
-    json["seconds"] = {{"load", seconds.load_s},
-                       {"costmap", seconds.costmap_s},
-                       {"plan", seconds.plan_s},
-                       {"proof", seconds.proof_s}};
+    json["seconds"] = {{"load", planned.ground.load_s},
+                       {"costmap", planned.ground.build_s},
+                       {"plan", planned.plan_s},
+                       {"proof", route.proof_s}};
     printJson(json);
   } else {
-    print(goalText(options, route) + planText(route, seconds));
+    print(goalText(options, route) + planText(planned));
   }
   if (!route.interrupted) return Exit::kDone;
   printError("talus: planning was cancelled: this is the best route so far, and its bound is weaker\n");

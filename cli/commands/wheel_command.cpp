@@ -91,91 +91,82 @@ std::string report(const terramech::WheelForces& forces, double load_N, double r
       forces.side_force_N, forces.side_force_N / load_N);
 }
 
-double loadOf(const WheelOptions& options, const terramech::Rover& rover) {
-  return std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
-}
+using Answer = std::pair<nlohmann::ordered_json, std::string>;
 
-int runOne(const WheelOptions& options, const Context& context) {
-  if (options.soil.empty()) lacking("--soil");
-  if (options.rover.empty()) lacking("--rover");
-  if (std::isnan(options.slip)) lacking("--slip");
-  const terramech::Rover rover = terramech::loadRover(options.rover);
+Answer rigidWheel(const WheelOptions& options, const terramech::Rover& rover, double load_N) {
   const terramech::Soil soil = terramech::underGravity(terramech::loadSoil(options.soil), rover.gravity_m_s2);
-  const double load_N = loadOf(options, rover);
   const auto forces = terramech::equilibrium(soil, rover.wheel,
                                              {.load_N = load_N,
                                               .slip = options.slip,
                                               .slip_angle_rad = options.slip_angle_rad,
                                               .gravity_m_s2 = rover.gravity_m_s2});
-  context.answer({{"soil", soil.name},
-                  {"rover", rover.name},
-                  {"load_N", load_N},
-                  {"slip", options.slip},
-                  {"slip_angle_rad", options.slip_angle_rad},
-                  {"sinkage_m", forces.sinkage_m},
-                  {"entry_angle_rad", forces.entry_angle_rad},
-                  {"torque_Nm", forces.torque_Nm},
-                  {"drawbar_pull_N", forces.drawbar_pull_N},
-                  {"side_force_N", forces.side_force_N}},
-                 report(forces, load_N, rover.wheel.radius_m));
-  return Exit::kDone;
+  return {{{"soil", soil.name},
+           {"rover", rover.name},
+           {"load_N", load_N},
+           {"slip", options.slip},
+           {"slip_angle_rad", options.slip_angle_rad},
+           {"sinkage_m", forces.sinkage_m},
+           {"entry_angle_rad", forces.entry_angle_rad},
+           {"torque_Nm", forces.torque_Nm},
+           {"drawbar_pull_N", forces.drawbar_pull_N},
+           {"side_force_N", forces.side_force_N}},
+          report(forces, load_N, rover.wheel.radius_m)};
 }
 
-int runTyre(const WheelOptions& options, const Context& context) {
-  if (options.rover.empty()) lacking("--rover");
-  if (std::isnan(options.slip)) lacking("--slip");
-  if (!options.hard_ground && options.soil.empty()) lacking("--soil");
-  const terramech::Rover rover = terramech::loadRover(options.rover);
+Answer pneumaticTyre(const WheelOptions& options, const terramech::Rover& rover, double load_N) {
   const terramech::Tyre tyre{
       .wheel = rover.wheel, .inflation_Pa = options.inflation_Pa, .carcass_Pa = options.carcass_Pa};
-  const terramech::TyreOperation operation{loadOf(options, rover), options.slip};
+  const terramech::TyreOperation operation{load_N, options.slip};
   const terramech::TyreForces forces =
       options.hard_ground ? tyreOnRigidGround(tyre, operation)
                           : tyreOnSoftGround(tyre, terramech::loadSoil(options.soil), operation);
   const std::string mode = forces.mode == terramech::TyreMode::Rigid ? "rigid" : "flattened";
-  context.answer(
-      {{"rover", rover.name},
-       {"load_N", operation.load_N},
-       {"slip", options.slip},
-       {"mode", mode},
-       {"critical_pressure_Pa", forces.critical_pressure_Pa},
-       {"sinkage_m", forces.sinkage_m},
-       {"deflection_m", forces.deflection_m},
-       {"flat_length_m", forces.flat_length_m},
-       {"torque_Nm", forces.torque_Nm},
-       {"drawbar_pull_N", forces.drawbar_pull_N}},
-      fmt::format("tyre          {}\n"
-                  "sinkage       {:10.3f} mm\n"
-                  "deflection    {:10.3f} mm\n"
-                  "flat length   {:10.3f} mm\n"
-                  "torque        {:10.3f} Nm\n"
-                  "drawbar pull  {:10.3f} N    DP/W {:.3f}\n",
-                  mode, 1e3 * forces.sinkage_m, 1e3 * forces.deflection_m, 1e3 * forces.flat_length_m,
-                  forces.torque_Nm, forces.drawbar_pull_N, forces.drawbar_pull_N / operation.load_N));
-  return Exit::kDone;
+  return {{{"rover", rover.name},
+           {"load_N", load_N},
+           {"slip", options.slip},
+           {"mode", mode},
+           {"critical_pressure_Pa", forces.critical_pressure_Pa},
+           {"sinkage_m", forces.sinkage_m},
+           {"deflection_m", forces.deflection_m},
+           {"flat_length_m", forces.flat_length_m},
+           {"torque_Nm", forces.torque_Nm},
+           {"drawbar_pull_N", forces.drawbar_pull_N}},
+          fmt::format("tyre          {}\n"
+                      "sinkage       {:10.3f} mm\n"
+                      "deflection    {:10.3f} mm\n"
+                      "flat length   {:10.3f} mm\n"
+                      "torque        {:10.3f} Nm\n"
+                      "drawbar pull  {:10.3f} N    DP/W {:.3f}\n",
+                      mode, 1e3 * forces.sinkage_m, 1e3 * forces.deflection_m, 1e3 * forces.flat_length_m,
+                      forces.torque_Nm, forces.drawbar_pull_N, forces.drawbar_pull_N / load_N)};
 }
 
-int runHardGround(const WheelOptions& options, const Context& context) {
-  if (options.rover.empty()) lacking("--rover");
-  if (std::isnan(options.torque_Nm)) lacking("--torque, or --inflation and --slip for a tyre");
-  const terramech::Rover rover = terramech::loadRover(options.rover);
-  const double load_N = loadOf(options, rover);
+Answer hardGround(const WheelOptions& options, const terramech::Rover& rover, double load_N) {
   const terramech::RigidGroundForces forces =
       terramech::rigidGroundForces(rover.wheel, {}, load_N, options.torque_Nm);
-  context.answer({{"rover", rover.name},
-                  {"load_N", load_N},
-                  {"torque_Nm", options.torque_Nm},
-                  {"drawbar_pull_N", forces.drawbar_pull_N},
-                  {"slips", forces.slips}},
-                 fmt::format("drawbar pull  {:10.3f} N    DP/W {:.3f}{}\n", forces.drawbar_pull_N,
-                             forces.drawbar_pull_N / load_N, forces.slips ? "   the wheel slips" : ""));
-  return Exit::kDone;
+  return {{{"rover", rover.name},
+           {"load_N", load_N},
+           {"torque_Nm", options.torque_Nm},
+           {"drawbar_pull_N", forces.drawbar_pull_N},
+           {"slips", forces.slips}},
+          fmt::format("drawbar pull  {:10.3f} N    DP/W {:.3f}{}\n", forces.drawbar_pull_N,
+                      forces.drawbar_pull_N / load_N, forces.slips ? "   the wheel slips" : "")};
 }
 
 int run(const WheelOptions& options, Context& context) {
-  if (!std::isnan(options.inflation_Pa)) return runTyre(options, context);
-  if (options.hard_ground) return runHardGround(options, context);
-  return options.cases.empty() ? runOne(options, context) : runTable(options, context);
+  if (!options.cases.empty()) return runTable(options, context);
+  const bool tyre = !std::isnan(options.inflation_Pa), rolls = options.hard_ground && !tyre;
+  if (!options.hard_ground && options.soil.empty()) lacking("--soil");
+  if (options.rover.empty()) lacking("--rover");
+  if (rolls && std::isnan(options.torque_Nm)) lacking("--torque, or --inflation and --slip for a tyre");
+  if (!rolls && std::isnan(options.slip)) lacking("--slip");
+  const terramech::Rover rover = terramech::loadRover(options.rover);
+  const double load_N = std::isnan(options.load_N) ? terramech::wheelLoad_N(rover) : options.load_N;
+  const auto [json, text] = tyre    ? pneumaticTyre(options, rover, load_N)
+                            : rolls ? hardGround(options, rover, load_N)
+                                    : rigidWheel(options, rover, load_N);
+  context.answer(json, text);
+  return Exit::kDone;
 }
 
 std::string libraryText() {

@@ -279,7 +279,7 @@ ordered_json places(const std::vector<maps::Point>& points) {
 
 // Track points as rows of plain numbers, because a drive has thousands of points.
 ordered_json storyOf(const TraverseRecord& story) {
-  ordered_json out{{"cell", story.grid.resolution_m}};
+  ordered_json out;
   out["track"] = jsonList(story.drive.track, [](const planner::TrackPoint& t) -> ordered_json {
     return {number(t.time_s), number(t.place.x_m),         number(t.place.y_m),
             number(t.slip),   number(t.energy_J / 1000.0), number(t.sinkage_m)};
@@ -295,6 +295,7 @@ ordered_json storyOf(const TraverseRecord& story) {
   out["patches"] = jsonList(story.patches, [](const planner::SoilPatch& p) -> ordered_json {
     return {number(p.centre.x_m), number(p.centre.y_m), number(p.radius_m)};
   });
+  out["cell"] = story.grid.resolution_m;
   return out;
 }
 

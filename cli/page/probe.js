@@ -1,21 +1,23 @@
 // Explains a clicked cell, or with Enter the cell at the centre of the map; arrow keys select adjacent cells.
 // Layer values are integers in units of the layer's last decimal, stored in RGB of an image; 0 means no
 // value.
-function words(uri, width, height) {
+async function words(uri, width, height) {
+  const context = contextOf(width, height);
+  context.drawImage(await loaded(uri), 0, 0);
+  const bytes = context.getImageData(0, 0, width, height).data;
+  return Uint32Array.from({length: width * height}, (_, i) => bytes[4 * i] << 16 | bytes[4 * i + 1] << 8 | bytes[4 * i + 2]);
+}
+
+function loaded(uri) {
   return new Promise(done => {
     const image = new Image();
-    image.onload = () => {
-      const canvas = document.createElement("canvas");
-      canvas.width = width;
-      canvas.height = height;
-      const context = canvas.getContext("2d", {willReadFrequently: true});
-      context.drawImage(image, 0, 0);
-      const bytes = context.getImageData(0, 0, width, height).data;
-      const word = (_, i) => bytes[4 * i] << 16 | bytes[4 * i + 1] << 8 | bytes[4 * i + 2];
-      done(Uint32Array.from({length: width * height}, word));
-    };
+    image.onload = () => done(image);
     image.src = uri;
   });
+}
+
+function contextOf(width, height) {
+  return Object.assign(document.createElement("canvas"), {width, height}).getContext("2d", {willReadFrequently: true});
 }
 
 function valueText(layer, word) {

@@ -1,5 +1,5 @@
 // The profiles: one panel per quantity over the distance along the route, with a common marker at the
-// pointer.
+// pointer (profiles.json).
 const allPanels = [
   {field: "elevation", title: "elevation [m]", zero: false},
   {field: "slope", title: "slope [deg]", zero: true},
@@ -29,56 +29,18 @@ function thinned(points, field, width) {
   return kept;
 }
 
-function panelMarks(panel, row, routes, layout) {
-  const scale = "y" + row, height = layout.panelHeight;
-  return {
-    type: "group",
-    encode: {update: {y: {value: row * layout.step}, width: {signal: "width"}, height: {value: height},
-                      stroke: {value: "#ccc"}}},
-    axes: [
-      {orient: "left", scale, title: panel.title, tickCount: height > 60 ? 4 : 2, grid: true, gridColor: "#e5e5e5",
-       titleFontWeight: 600,       titleAngle: 0, titleAlign: "left", titleX: 0, titleY: -3, titleBaseline: "bottom", titleAnchor: "start"},
-      ...(layout.panels.length - 1 === row
-        ? [{orient: "bottom", scale: "x", title: {signal: "unitTitle"}, tickCount: 8}] : []),
-    ],
-    marks: routes.map(({colour}, k) => ({
-      type: "line", clip: true, from: {data: panel.field + k}, interactive: false,
-      encode: {update: {x: {scale: "x", field: "d"}, y: {scale, field: panel.field}, stroke: {value: colour},
-                        strokeWidth: {value: 1.6},
-                        interpolate: {value: held.includes(panel.field) ? "step-after" : "linear"},
-                        defined: {signal: `isValid(datum['${panel.field}'])`}}},
-    })),
-  };
-}
-
-function profileSpec(routes, unit, layout) {
-  const {panels, step, panelHeight} = layout;
-  const domain = (data, field) => ({fields: routes.map((_, k) => ({data: data + k, field}))});
-  return {
-    width: layout.width, height: (panels.length - 1) * step + panelHeight,
-    padding: {left: 48, right: 14, top: 16, bottom: 42},
-    autosize: "none",
-    data: panels.flatMap(({field}) => routes.map(({points}, k) => (
-      {name: field + k,
-       values: thinned(points, field, layout.width).map(p => ({d: p.s / unit.metres, [field]: p[field]}))}))),
-    signals: [
-      {name: "unitTitle", value: `distance along the route [${unit.name}]`},
-      {name: "hover", value: null, on: [
-        {events: "pointermove, mousemove, touchmove, touchstart", update: "clamp(invert('x', x()), 0, domain('x')[1])"},
-      ]},
-    ],
-    scales: [
-      {name: "x", type: "linear", domain: domain(panels[0].field, "d"), range: "width", zero: true, nice: false},
-      ...panels.map((panel, row) => ({name: "y" + row, type: "linear", range: [panelHeight, 0], nice: true, zero: panel.zero,
-                                      domain: domain(panel.field, panel.field)})),
-    ],
-    marks: [
-      ...panels.map((panel, row) => panelMarks(panel, row, routes, layout)),
-      {type: "rule", interactive: false, encode: {update: {
-        x: {signal: "hover === null ? -1000 : scale('x', hover)"}, y: {value: 0}, y2: {signal: "height"},
-        stroke: {value: "#b3202c"}, strokeWidth: {value: 1.2}}}},
-    ],
-  };
+function profileSpec(routes, unit, {panels, step, panelHeight, width}) {
+  const values = panels.flatMap((panel, row) => routes.flatMap(({points, colour}, route) =>
+    thinned(points, panel.field, width).map(p => (
+      {...panel, row, route, colour, d: p.s / unit.metres, value: p[panel.field],
+       interpolate: held.includes(panel.field) ? "step-after" : "linear"}))));
+  return {...profilesJson, width, height: (panels.length - 1) * step + panelHeight, data: [{name: "points", values}], signals: [
+    {name: "step", value: step}, {name: "panelHeight", value: panelHeight},
+    {name: "unitTitle", value: `distance along the route [${unit.name}]`},
+    {name: "hover", value: null, on: [
+      {events: "pointermove, mousemove, touchmove, touchstart", update: "clamp(invert('x', x()), 0, domain('x')[1])"},
+    ]},
+  ]};
 }
 
 // Panels that fit the element: all, or elevation and the quantity that colours the route.

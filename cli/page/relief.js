@@ -76,22 +76,15 @@ function groundGeometry(heights, data) {
 // The selected layer as on the map: drawn with its opacity over the hillshade, then multiplied by the
 // hillshade; over it the routes.
 async function groundTexture(data) {
-  const image = uri => new Promise(done => {
-    const made = new Image();
-    made.onload = () => done(made);
-    made.src = uri;
-  });
   const layer = data.layers[document.getElementById("layer").value];
-  const {width, height} = data.grid, scale = Math.min(4, Math.max(1, Math.floor(1024 / Math.max(width, height))));
-  const canvas = document.createElement("canvas"), context = canvas.getContext("2d", {willReadFrequently: true});
-  canvas.width = width * scale;
-  canvas.height = height * scale;
+  const {width, height} = data.grid, scale = Math.max(1, Math.floor(1200 / Math.max(width, height)));
+  const context = contextOf(width * scale, height * scale), canvas = context.canvas;
   context.imageSmoothingEnabled = false;
-  const shade = await image(data.shade);
+  const shade = await loaded(data.shade);
   context.drawImage(shade, 0, 0, canvas.width, canvas.height);
   if (layer) {
     context.globalAlpha = document.getElementById("opacity").value / 100;
-    context.drawImage(await image(layer.image), 0, 0, canvas.width, canvas.height);
+    context.drawImage(await loaded(layer.image), 0, 0, canvas.width, canvas.height);
     context.globalAlpha = Math.max(layer.relief, 0.3);  // unlit: only the shading shows the terrain
     context.globalCompositeOperation = "multiply";
     context.filter = lightFilter(data.light);
@@ -110,7 +103,7 @@ async function groundTexture(data) {
 
 // Draws a route with a rim, in the colours of its quantity, and its ends.
 function drawWay(context, spots, colours, rim) {
-  const width = Math.hypot(context.canvas.width, context.canvas.height) / 300, last = spots.length - 1;
+  const width = Math.max(context.canvas.width, context.canvas.height) / 200, last = spots.length - 1;
   const stroke = (line, colour, share) => {
     context.strokeStyle = colour;
     context.lineWidth = share * width;
@@ -124,8 +117,8 @@ function drawWay(context, spots, colours, rim) {
   context.textBaseline = "middle";
   context.font = `bold ${3 * width}px sans-serif`;
   for (const [[x, y], letter] of [[spots[0], "S"], [spots[last], "G"]]) {
-    stroke([[x, y], [x, y]], "#fff", 5.4);
-    stroke([[x, y], [x, y]], "#1b3fbf", 4.6);
+    stroke([[x, y], [x, y + 0.01]], "#fff", 6);
+    stroke([[x, y], [x, y + 0.01]], "#1b3fbf", 5);
     context.fillStyle = "#fff";
     context.fillText(letter, x, y);
   }

@@ -1,4 +1,4 @@
-// The charts of a report: lines and points over linear or logarithmic axes.
+// The charts of a report: lines and points over linear or logarithmic axes (chart.json).
 const charts = JSON.parse(document.getElementById("data").textContent);
 
 // The stated ends of an axis, or those of the data with a margin.
@@ -20,39 +20,27 @@ function domainOf({low, high, log}, series, place) {
 // Series of points differ in shape, too, for readers and printers without colours.
 const shapes = ["circle", "cross", "square", "triangle-up", "diamond"];
 
-function seriesMark({name, colour, points, dashed, values}, k) {
+function styleOf({name, colour, points, dashed, values}, k) {
   const many = values.length > 400;
-  const at = {x: {scale: "x", field: "x"}, y: {scale: "y", field: "y"}};
-  const look = points
-    ? {shape: {value: shapes[k % shapes.length]}, fill: {value: dashed ? "#fff" : colour}, stroke: {value: colour}, strokeWidth: {value: dashed ? 2 : 0},
-       size: {value: many ? 9 : values.length === 1 ? 90 : 24}, fillOpacity: {value: !many ? 0.85 : k === 0 ? 0.35 : 0.8},
-       tooltip: {signal: `'${name.replace(/[\\']/g, "")}: ' + format(datum.x, '.4~g') + ', ' + format(datum.y, '.4~g')`}}
-    : {stroke: {value: colour}, strokeWidth: {value: 1.8}, strokeDash: {value: dashed ? [5, 4] : []},
-       defined: {signal: "isValid(datum.x) && isValid(datum.y)"}};
-  return {type: points ? "symbol" : "line", clip: true, from: {data: "series" + k}, encode: {update: {...at, ...look}}};
+  return {series: k, name, colour, points, dashed, inside: dashed ? "#fff" : colour,
+          shape: shapes[points ? k % shapes.length : 0], size: many ? 9 : values.length === 1 ? 90 : 24,
+          opacity: !many ? 0.85 : k === 0 ? 0.35 : 0.8};
 }
 
 function chartSpec({title, x, y, series}, width) {
-  const named = series.filter(({name}) => name);
-  const axis = (orient, scale, {label, log}) => (
-    {orient, scale, title: label, titleFontWeight: 400, grid: true, gridColor: "#e4e4e4", tickCount: 6, labelOverlap: true,
-     ...(log ? {format: "~g"} : {})});
+  const styles = series.map(styleOf), named = styles.filter(({name}) => name);
+  const values = series.flatMap((one, k) => one.values.map(([x, y]) => ({...styles[k], x, y})));
   const scale = (name, {log}, range, domain) => ({name, type: log ? "log" : "linear", range, domain, zero: false, nice: false});
+  const legend = (name, field) => (
+    {name, type: "ordinal", domain: named.map(({name}) => name), range: named.map(one => one[field])});
   return {
-    width, height: Math.round(0.5 * width), padding: 4, autosize: {type: "fit-x", contains: "padding"},
-    title: {text: title, fontSize: 13, limit: width},
-    data: series.map(({values}, k) => ({name: "series" + k, values: values.map(([x, y]) => ({x, y}))})),
-    scales: [
-      scale("x", x, "width", domainOf(x, series, 0)), scale("y", y, "height", domainOf(y, series, 1)),
-      {name: "colour", type: "ordinal", domain: named.map(({name}) => name), range: named.map(({colour}) => colour)},
-      {name: "inside", type: "ordinal", domain: named.map(({name}) => name),
-       range: named.map(({colour, dashed}) => dashed ? "#fff" : colour)},
-      {name: "shape", type: "ordinal", domain: named.map(({name}) => name),
-       range: named.map(one => shapes[one.points ? series.indexOf(one) % shapes.length : 0])},
-    ],
-    axes: [axis("bottom", "x", x), axis("left", "y", y)],
+    ...chartJson, width, height: Math.round(0.5 * width), title: {text: title, fontSize: 13, limit: width},
+    signals: [{name: "xTitle", value: x.label}, {name: "yTitle", value: y.label}],
+    data: [{name: "points", values: values.filter(({points}) => !points)}, {name: "spots", values: values.filter(({points}) => points)}],
+    scales: [scale("x", x, "width", domainOf(x, series, 0)), scale("y", y, "height", domainOf(y, series, 1)),
+             legend("colour", "colour"), legend("inside", "inside"), legend("shape", "shape")],
+    axes: chartJson.axes.map((axis, k) => [x, y][k].log ? {...axis, format: "~g"} : axis),
     legends: named.length ? [{fill: "inside", stroke: "colour", shape: "shape", orient: "bottom", columns: width > 360 ? 3 : 2}] : [],
-    marks: series.map(seriesMark),
   };
 }
 

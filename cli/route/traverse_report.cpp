@@ -8,6 +8,7 @@
 #include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/page.hpp>
+#include <talus/cli/draw/plot.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/route/route_reader.hpp>
 #include <talus/cli/route/traverse_report.hpp>
@@ -149,20 +150,20 @@ std::string asText(const BeliefResults& beliefs) {
   std::string text =
       fmt::format("{} worlds; perfect knowledge reaches the goal in {} of them; energy is compared there.\n",
                   perfect.size(), safeWorlds(perfect));
-  text += fmt::format("{:<18}", "soil knowledge");
-  for (const Outcome outcome : kOutcomes) text += fmt::format(" {:<22}", label(outcome));
-  text += " energy relative to perfect knowledge\n";
+  Table table{{"soil knowledge"}};
+  for (const Outcome outcome : kOutcomes) table.front().push_back(label(outcome));
+  table.front().emplace_back("energy relative to perfect knowledge");
   for (std::size_t b = 0; b < beliefs.size(); ++b) {
     const planner::Comparison against = planner::compared(beliefs[b], perfect);
-    text += fmt::format("{:<18}", label(static_cast<SoilKnowledge>(b)));
-    for (const planner::Sampled& share : against.rates.outcome)
-      text += fmt::format(" {:<22}", percent(share));
+    table.push_back({label(static_cast<SoilKnowledge>(b))});
+    for (const planner::Sampled& share : against.rates.outcome) table.back().push_back(percent(share));
     const planner::Sampled& energy = against.energy_over_perfect_knowledge;
-    text += std::isnan(energy.value) ? std::string(" -\n")
-                                     : fmt::format(" {:.3f} [{:.3f}, {:.3f}]\n", energy.value,
-                                                   energy.interval_95[0], energy.interval_95[1]);
+    table.back().push_back(std::isnan(energy.value)
+                               ? "-"
+                               : fmt::format("{:.3f} [{:.3f}, {:.3f}]", energy.value, energy.interval_95[0],
+                                             energy.interval_95[1]));
   }
-  return text + "95 % confidence intervals in brackets.\n";
+  return text + tableText(table) + "95 % confidence intervals in brackets.\n";
 }
 
 SimulatedWorlds simulatedWorlds(std::size_t beliefs, std::size_t worlds, const JobResults& jobs) {
