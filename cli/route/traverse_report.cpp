@@ -158,10 +158,9 @@ std::string asText(const BeliefResults& beliefs) {
     table.push_back({label(static_cast<SoilKnowledge>(b))});
     for (const planner::Sampled& share : against.rates.outcome) table.back().push_back(percent(share));
     const planner::Sampled& energy = against.energy_over_perfect_knowledge;
-    table.back().push_back(std::isnan(energy.value)
-                               ? "-"
-                               : fmt::format("{:.3f} [{:.3f}, {:.3f}]", energy.value, energy.interval_95[0],
-                                             energy.interval_95[1]));
+    table.back().push_back(std::isnan(energy.value) ? "-" : fmt::format("{:.3f}", energy.value));
+    if (!std::isnan(energy.interval_95[0]))  // one world has none
+      table.back().back() += fmt::format(" [{:.3f}, {:.3f}]", energy.interval_95[0], energy.interval_95[1]);
   }
   return text + tableText(table) + "95 % confidence intervals in brackets.\n";
 }
