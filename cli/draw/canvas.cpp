@@ -6,6 +6,7 @@
 #include <cairo.h>
 #include <fmt/format.h>
 #include <nettle/base64.h>
+#include <png.h>
 
 #include <talus/cli/draw/canvas.hpp>
 #include <talus/planner/route/route_json.hpp>
@@ -18,7 +19,7 @@ std::string hex(Colour c) {
 
 std::uint32_t pixel(Colour c) {
   const auto byte = [](double v) {
-    return static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(v, 0.0, 1.0)));
+    return static_cast<std::uint32_t>(255.0 * std::clamp(v, 0.0, 1.0) + 0.5);
   };
   return byte(c.alpha) << 24 | byte(c.red * c.alpha) << 16 | byte(c.green * c.alpha) << 8 |
          byte(c.blue * c.alpha);
@@ -61,11 +62,6 @@ Colour at(Scale scale, double t) {
 
 namespace {
 
-cairo_status_t append(void* text, const unsigned char* data, unsigned length) {
-  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
-  return CAIRO_STATUS_SUCCESS;
-}
-
 void setColour(cairo_t* cairo, Colour c) {
   cairo_set_source_rgba(cairo, c.red, c.green, c.blue, c.alpha);
 }
@@ -97,15 +93,13 @@ struct Canvas::Surface {
 };
 
 Canvas::Canvas(const Options& o) : surface_(std::make_unique<Surface>()) {
-  surface_->surface =
-      cairo_image_surface_create(o.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, o.width, o.height);
+  surface_->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o.width, o.height);
   surface_->cairo = cairo_create(surface_->surface);
   if (const cairo_status_t status = cairo_status(surface_->cairo); status != CAIRO_STATUS_SUCCESS)
     throw std::runtime_error(std::string("cannot draw: ") + cairo_status_to_string(status));
   cairo_set_line_join(surface_->cairo, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(surface_->cairo, CAIRO_LINE_CAP_ROUND);
-  if (!o.transparent)
-    fill({0, 0, static_cast<double>(o.width), static_cast<double>(o.height)}, rgb(0xFFFFFF));
+  fill({0, 0, static_cast<double>(o.width), static_cast<double>(o.height)}, rgb(0xFFFFFF));
 }
 
 Canvas::~Canvas() = default;
@@ -192,15 +186,37 @@ void Canvas::unclip() {
 }
 
 std::string Canvas::bytes() {
-  std::string bytes;
-  cairo_surface_write_to_png_stream(surface_->surface, append, &bytes);
-  return bytes;
+  cairo_surface_t* from = surface_->surface;
+  cairo_surface_flush(from);
+  Image image(cairo_image_surface_get_width(from), cairo_image_surface_get_height(from));
+  const auto* pixels = reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(from));
+  for (std::size_t i = 0; i < image.argb.size(); ++i) image.argb[i] = pixels[i] | 0xFF000000U;
+  return png(image);
 }
 
 std::string png(const Image& image) {
-  Canvas canvas({.width = image.width, .height = image.height, .transparent = true});
-  canvas.image(image, {0.0, 0.0, static_cast<double>(image.width), static_cast<double>(image.height)});
-  return canvas.bytes();
+  const bool opaque = std::ranges::all_of(image.argb, [](std::uint32_t p) { return p >= 0xFF000000U; });
+  std::vector<std::uint8_t> samples;
+  samples.reserve(4 * image.argb.size());
+  for (const std::uint32_t p : image.argb) {
+    const std::uint32_t alpha = p >> 24;
+    for (const unsigned shift : {16U, 8U, 0U})
+      samples.push_back(
+          static_cast<std::uint8_t>(alpha == 0 ? 0 : ((p >> shift & 255) * 255 + alpha / 2) / alpha));
+    if (!opaque) samples.push_back(static_cast<std::uint8_t>(alpha));
+  }
+  png_image file{};
+  file.version = PNG_IMAGE_VERSION;
+  file.width = static_cast<png_uint_32>(image.width);
+  file.height = static_cast<png_uint_32>(image.height);
+  file.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+  file.flags = PNG_IMAGE_FLAG_FAST;
+  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(file), ' ');
+  png_alloc_size_t size = bytes.size();
+  if (png_image_write_to_memory(&file, bytes.data(), &size, 0, samples.data(), 0, nullptr) == 0)
+    throw std::runtime_error(std::string("cannot write a PNG image: ") + file.message);
+  bytes.resize(size);
+  return bytes;
 }
 
 std::string base64(const std::string& bytes) {

@@ -129,7 +129,6 @@ class Canvas {
   struct Options {
     int width = 0;
     int height = 0;
-    bool transparent = false;
   };
 
   explicit Canvas(const Options& options);
@@ -158,7 +157,7 @@ class Canvas {
   std::unique_ptr<Surface> surface_;
 };
 
-/// Returns the bytes of an image as a PNG file.
+/// Returns the bytes of an image as a PNG file, compressed for speed.
 std::string png(const Image& image);
 
 /// Returns bytes in Base64 encoding, for data URIs.
