@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -75,20 +76,22 @@ AssessedTable assessTable(const AssessOptions& options, const ProgressMonitor& w
 /// Options of a soil estimate from a telemetry table. The methods are
 ///   bevameter       plate tests
 ///   sojourner, iagnemma, linear-offset   straight lines in (sigma, tau)
-///   wong-reece      posterior from the wheel's equilibrium
+///   wong-reece      fit of the wheel's equilibrium, as in traceResiduals()
 struct EstimateOptions {
   TableFile table;     ///< CSV file
   std::string method;  ///< estimation method, one of estimateMethods()
   /// K [m] or one of modulusMethods(); empty: column of the table, otherwise prior, otherwise joint.
   std::string shear_modulus;
-  /// Soil file or library name; empty: thesis Table 2.1 for wong-reece, otherwise no prior.
+  /// Soil file or library name; empty: the wide prior of soils in general for wong-reece, otherwise no prior.
   std::string prior;
   std::string rover;  ///< library name or file of the rover with default wheel dimensions; may be empty
   std::string model;  ///< wong-reece: file of a refined model whose effects are applied; empty: no effects
-  bool recursive = false;  ///< process rows one by one and store the estimate after each row
+  /// Linear methods: process rows one by one and store the estimate after each row.
+  bool recursive = false;
   /// bevameter: width of all plates for a table without a width column; 0: not given.
   double plate_width_m = 0.0;
-  double noise = 0.05;  ///< relative standard deviation of each reading [-]
+  /// wong-reece: relative standard deviation of each reading [-]; 0: estimated from the rows.
+  double noise = 0.0;
 };
 
 /// Soil estimate after a row of the table; NaN if not yet available.
@@ -115,6 +118,7 @@ struct SoilEstimate {
   double cohesion_Pa;                        ///< cohesion c
   double tan_friction;                       ///< friction coefficient tan(phi) [-]
   double shear_modulus_m;                    ///< shear deformation modulus K
+  double shear_modulus_std_m = 0.0;          ///< wong-reece: its standard deviation
   Eigen::Matrix2d covariance;                ///< covariance of (c, tan phi)
   double friction_angle_rad;                 ///< friction angle phi
   double sinkage_exponent;                   ///< sinkage exponent n [-]
@@ -130,9 +134,12 @@ struct SoilEstimate {
   std::vector<std::string> warnings;  ///< warnings about the fit
   std::vector<std::string> effects;   ///< effects of the model file that were applied
   std::vector<StressPair> points;     ///< equations of the samples in a line fit, for a plot
-  std::optional<SoilPosterior> posterior;  ///< wong-reece: posterior of the soil
-  std::vector<std::string> class_names;    ///< wong-reece: names of the soil classes of the prior
-  std::vector<RunningSoil> running;        ///< estimate after each used row, if `recursive` is true
+  /// wong-reece: wheel model with the estimated soil and the covariance of its parameters.
+  std::optional<RefinedModel> model;
+  double misfit = 0.0;  ///< wong-reece: mean square of the residuals over their errors; 1 is expected [-]
+  /// wong-reece: names of the soils of the prior, and the probability of each.
+  std::vector<std::pair<std::string, double>> classes;
+  std::vector<RunningSoil> running;  ///< estimate after each used row, if `recursive` is true
 
   /// Initialises the numbers to NaN.
   SoilEstimate();

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include <Eigen/Cholesky>
+
 #include <talus/cli/app/command.hpp>
 #include <talus/cli/draw/plot.hpp>
 #include <talus/cli/soil/table_options.hpp>
@@ -40,7 +42,7 @@ void bind(CLI::App& command, EstimateCommand& options) {
       });
   addOption(
       command, "--prior NAME|FILE", options.prior,
-      "prior soils with {mean, std} (default: thesis Table 2.1 for wong-reece, none for other methods)");
+      "prior soils with {mean, std} (default: soils in general for wong-reece, none for other methods)");
   addOption(command, "--model M.yaml", options.model,
             "refined model; its effects on sinkage, torque and drawbar pull are modelled and not "
             "attributed to the soil (wong-reece)");
@@ -49,10 +51,14 @@ void bind(CLI::App& command, EstimateCommand& options) {
   addOption(command, "--plate-width M", options.plate_width_m,
             "plate width b where it is missing from the file (bevameter)")
       ->check(CLI::Range(1e-3, 10.0));
-  command.add_option("--noise", options.noise, "relative standard deviation of each reading (wong-reece)")
+  command
+      .add_option(
+          "--noise", options.noise,
+          "relative standard deviation of each reading (wong-reece; default: estimated from the rows)")
       ->check(CLI::Range(1e-4, 0.5));
   command.add_flag("--recursive", options.recursive,
-                   "process the rows one by one in constant memory; print the estimate after each row");
+                   "process the rows one by one in constant memory; print the estimate after each row (not "
+                   "for wong-reece and bevameter)");
   groupOptions(command, "Method");
   addTableOptions(command, options.columns);
   addOutput(command, "--html R.html", options.html, "page to write, with the fit");
@@ -107,19 +113,21 @@ std::string soilsText(const SoilEstimate& e) {
   return text;
 }
 
+// Returns the bounds between which a quantity lies with 95 % probability; cohesion and K are not negative.
+Json interval(double mean, double std) {
+  return {std::max(0.0, mean - 1.96 * std), mean + 1.96 * std};
+}
+
 Json posteriorJson(const SoilEstimate& e) {
-  const auto& p = *e.posterior;
-  const auto range = [](const CredibleInterval& i) { return Json{i.low, i.high}; };
   Json classes = Json::object();
-  for (std::size_t k = 0; k < e.class_names.size(); ++k) classes[e.class_names[k]] = p.class_probabilities[k];
+  for (const auto& [name, probability] : e.classes) classes[name] = probability;
   return {{"interval_95",
-           {{"cohesion_Pa", range(p.cohesion_Pa)},
-            {"friction_angle_rad", range(p.friction_angle_rad)},
-            {"shear_modulus_m", range(p.shear_modulus_m)}}},
+           {{"cohesion_Pa", interval(e.cohesion_Pa, std::sqrt(e.covariance(0, 0)))},
+            {"friction_angle_rad",
+             interval(e.friction_angle_rad, frictionStd_rad(e.covariance, e.friction_angle_rad))},
+            {"shear_modulus_m", interval(e.shear_modulus_m, e.shear_modulus_std_m)}}},
           {"class_probabilities", classes},
-          {"ellipse_95", p.ellipse_95},
-          {"misfit", p.misfit},
-          {"effective_draws", p.effective_draws}};
+          {"misfit", e.misfit}};
 }
 
 Json jsonOf(const std::string& method, const SoilEstimate& e) {
@@ -147,7 +155,7 @@ Json jsonOf(const std::string& method, const SoilEstimate& e) {
   if (!e.soils.empty()) json["soils"] = soilsJson(e);
   if (!e.effects.empty()) json["effects"] = e.effects;
   if (!e.running.empty()) json["running"] = runningJson(e);
-  if (e.posterior) json.update(posteriorJson(e));
+  if (e.model) json.update(posteriorJson(e));
   return json;
 }
 
@@ -182,8 +190,7 @@ Table soilTable(const SoilEstimate& e) {
         "{:.3g}");
   add("k_c [N/m^(n+1)]", e.cohesive_modulus.value_or(NAN), "{:.3g}");
   add("k_phi [N/m^(n+2)]", e.frictional_modulus.value_or(NAN), "{:.3g}");
-  for (std::size_t k = 0; k < e.class_names.size(); ++k)
-    add(e.class_names[k], e.posterior->class_probabilities[k], "{:.3f}");
+  for (const auto& [name, probability] : e.classes) add("probability of " + name, probability, "{:.3f}");
   return table;
 }
 
@@ -215,33 +222,29 @@ Plot strengthPlot(const SoilEstimate& e) {
           .series = {line, points}};
 }
 
+// Ellipse that contains cohesion and friction with 95 % probability.
 Plot posteriorPlot(const SoilEstimate& e) {
-  Plot plot{.title = "Posterior samples",
-            .x = {.label = "cohesion [kPa]"},
-            .y = {.label = "friction angle [deg]"},
-            .series = {}};
-  double heaviest = 0.0;
-  for (const auto& d : e.posterior->draws) heaviest = std::max(heaviest, d.weight);
-  for (std::size_t k = 0; k < e.class_names.size(); ++k) {
-    Series cloud{.name = e.class_names[k], .x = {}, .y = {}, .mark = Series::Mark::Points};
-    for (const auto& d : e.posterior->draws) {
-      if (d.soil_class != static_cast<int>(k) || d.weight < 0.02 * heaviest) continue;
-      cloud.x.push_back(1e-3 * d.soil.cohesion_Pa);
-      cloud.y.push_back(d.soil.friction_angle_rad / kDegree);
-    }
-    if (!cloud.x.empty()) plot.series.push_back(cloud);
+  constexpr double kBound = 5.991;  // of chi-squared with two degrees of freedom
+  Series ellipse{.name = "95 % of the posterior", .x = {}, .y = {}};
+  const Eigen::Matrix2d root = e.covariance.llt().matrixL();
+  for (int k = 0; k <= 72; ++k) {
+    const double angle = k * 5.0 * kDegree;
+    const Eigen::Vector2d at = std::sqrt(kBound) * root * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    ellipse.x.push_back(1e-3 * (e.cohesion_Pa + at[0]));
+    ellipse.y.push_back(std::atan(e.tan_friction + at[1]) / kDegree);
   }
-  return plot;
+  return {.title = "Strength",
+          .x = {.label = "cohesion [kPa]"},
+          .y = {.label = "friction angle [deg]"},
+          .series = {ellipse}};
 }
 
 // Measured rows and model predictions for the estimated soil, one plot per channel; empty if the estimate has
-// no posterior.
+// no wheel model.
 std::vector<Plot> fitPlots(const EstimateCommand& options, const SoilEstimate& e) {
   std::vector<Plot> plots;
-  if (!e.posterior) return plots;
-  RefinedModel model = baseModel(options.model, options.rover).model;
-  model.soil = soilOf(e.posterior->mean);
-  const ModelRows rows = modelRows(readTelemetry(options.table, {}), model);
+  if (!e.model) return plots;
+  const ModelRows rows = modelRows(readTelemetry(options.table, {}), *e.model);
   SolvedContacts solved;
   const Eigen::MatrixXd predicted = predictRows(rows.model, rows.trial, solved);
   for (const Channel c : kAllChannels)
@@ -255,7 +258,7 @@ void writePage(const EstimateCommand& options, const SoilEstimate& e,
   for (const std::string& text : warnings) page.paragraph("Warning: " + text + ".");
   std::vector<Plot> plots = fitPlots(options, e);
   if (!e.points.empty()) plots.push_back(strengthPlot(e));
-  if (e.posterior) plots.push_back(posteriorPlot(e));
+  if (e.model) plots.push_back(posteriorPlot(e));
   page.charts(plots);
   writeFile(options.html, page.html());
 }

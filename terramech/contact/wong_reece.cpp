@@ -1,91 +1,13 @@
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Core>
-#include <unsupported/Eigen/AutoDiff>
-
 #include <talus/terramech/contact/rim_contact.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
 #include <talus/terramech/numerics/functions.hpp>
-#include <talus/terramech/numerics/gauss_legendre.hpp>
 
 namespace talus::terramech {
-
-namespace {
-
-/// Returns (W, T, DP) of thesis Eqs. C.8 to C.10 for parameters `p` in the order of ContactColumn; Number is double, or
-/// a number with derivatives.
-template <class Number>
-Eigen::Matrix<Number, 3, 1> forcesBy(const std::array<Number, kContactColumns>& p, const ContactSoil& soil,
-                                     const Wheel& wheel) {
-  using std::asin, std::exp, std::log, std::sin, std::cos, std::sqrt, std::tan;
-  constexpr auto kRule = gaussLegendre<10>();
-  const double r = wheel.radius_m;
-  const Number entry = 2.0 * asin(sqrt(p[kSinkage] / (2.0 * r))), sin_entry = sin(entry),
-               travel = 1.0 - p[kSlip];
-  const Number peak = soil.c1 + soil.c2 * p[kSlip], tan_phi = tan(p[kFriction]);
-  Eigen::Matrix<Number, 3, 1> sum = Eigen::Matrix<Number, 3, 1>::Zero();
-  for (std::size_t k = 0; k < kRule.node.size(); ++k) {
-    const double t = kRule.node[k], s = t * t * t, ds = 3.0 * t * t * kRule.weight[k];
-    const Number front = entry * (1.0 - (1.0 - peak) * s);
-    const Number depth = 2.0 * r * sin(0.5 * (entry + front)) * sin(0.5 * (entry - front));
-    const Number sigma = p[kModulus] * exp(p[kExponent] * log(depth));
-    const auto add = [&](const Number& theta, const Number& arc) {
-      const Number sine = sin(theta), cosine = cos(theta);
-      const Number j = r * ((entry - theta) - travel * (sin_entry - sine));
-      const Number tau = (p[kCohesion] + sigma * tan_phi) * (1.0 - exp(-j / p[kShear]));
-      sum[kLoad] += arc * (sigma * cosine + tau * sine);
-      sum[kTorque] += arc * tau;
-      sum[kPull] += arc * (tau * cosine - sigma * sine);
-    };
-    add(front, (1.0 - peak) * entry * ds);
-    add(peak * entry * s, peak * entry * ds);  // the mirror point behind the peak has the same sigma (C.3)
-  }
-  const double area = r * wheel.width_m;
-  return {area * sum[kLoad], area * r * sum[kTorque], area * sum[kPull]};
-}
-
-std::array<double, kContactColumns> parametersOf(const ContactSoil& soil, const ContactState& state) {
-  return {soil.cohesion_Pa,
-          soil.friction_angle_rad,
-          soil.sinkage_exponent,
-          soil.sinkage_modulus,
-          soil.shear_modulus_m,
-          state.sinkage_m,
-          state.slip};
-}
-
-}  // namespace
-
-Soil soilOf(const ContactSoil& contact) {
-  return {.name = "contact",
-          .cohesion_Pa = contact.cohesion_Pa,
-          .friction_angle_rad = contact.friction_angle_rad,
-          .sinkage_exponent = contact.sinkage_exponent,
-          .cohesive_modulus = 0.0,
-          .frictional_modulus = contact.sinkage_modulus,
-          .shear_modulus_m = contact.shear_modulus_m,
-          .c1 = contact.c1,
-          .c2 = contact.c2};
-}
-
-ForceVector contactForces(const ContactSoil& soil, const Wheel& wheel, const ContactState& state) {
-  return forcesBy(parametersOf(soil, state), soil, wheel);
-}
-
-ForceVector contactForces(const ContactSoil& soil, const Wheel& wheel, const ContactState& state,
-                          ContactDerivative& derivative) {
-  using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, kContactColumns, 1>>;
-  const auto parameters = parametersOf(soil, state);
-  std::array<Dual, kContactColumns> p;
-  for (std::size_t k = 0; k < p.size(); ++k) p[k] = Dual(parameters[k], kContactColumns, static_cast<int>(k));
-  const auto forces = forcesBy(p, soil, wheel);
-  for (int row = 0; row < 3; ++row) derivative.row(row) = forces[row].derivatives().transpose();
-  return {forces[kLoad].value(), forces[kTorque].value(), forces[kPull].value()};
-}
 
 namespace {
 

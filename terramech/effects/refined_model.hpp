@@ -273,6 +273,7 @@ struct SensorNoise {
 /// Standard deviations of sensors that a model file states, in the unit of the column; empty if not stated.
 struct StatedSensors {
   std::optional<double> load_N, slip, torque_Nm, sinkage_m, drawbar_pull_N, side_force_N;
+  std::optional<double> relative;  ///< error over the reading of each sensor without a value above [-]
 };
 
 /// Identifies a parameter of a model that was fitted to data.

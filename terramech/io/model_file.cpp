@@ -78,13 +78,10 @@ void readFit(const YamlFields& root, RefinedModel& model) {
     root.refuse("covariance", "covariance " + fault, "write the model by talus trace --model-out");
 }
 
-namespace {
-
-constexpr const char* kColumn[] = {"drawbar_pull_N", "sinkage_m", "torque_Nm", "side_force_N"};
-constexpr const char* kRelative[] = {"drawbar_pull_relative", "sinkage_relative", "torque_relative",
-                                     "side_force_relative"};
-
-void setDeviation(RefinedModel& model, const SoilPrior& prior) {
+void setSoil(RefinedModel& model, const SoilPrior& prior) {
+  model.soil = prior.mean;
+  model.soil_prior_mean.clear();
+  model.soil_prior_std.clear();
   const SoilDeviation& d = prior.deviation;
   for (const SoilParameter& p : soilParameters()) {
     model.soil_prior_mean[p.name] = p.get(prior.mean);
@@ -97,11 +94,14 @@ void setDeviation(RefinedModel& model, const SoilPrior& prior) {
   if (stiffness > 0.0) model.soil_prior_std["log_stiffness"] = stiffness / sinkageModulus(prior.mean, width);
 }
 
+namespace {
+
+constexpr const char* kColumn[] = {"drawbar_pull_N", "sinkage_m", "torque_Nm", "side_force_N"};
+constexpr const char* kRelative[] = {"drawbar_pull_relative", "sinkage_relative", "torque_relative",
+                                     "side_force_relative"};
+
 void readSoilInto(const YamlFields& root, RefinedModel& model) {
-  const SoilPrior prior =
-      root.isMapping("soil") ? readSoil(root.fields("soil")) : loadSoilPrior(root.word("soil"));
-  model.soil = prior.mean;
-  setDeviation(model, prior);
+  setSoil(model, root.isMapping("soil") ? readSoil(root.fields("soil")) : loadSoilPrior(root.word("soil")));
 }
 
 /// Returns the initial soil of a fit if none is given.
@@ -284,9 +284,7 @@ ModelFile loadModel(const std::string& path) {
       std::filesystem::exists(path) ? YamlFields::file(path) : YamlFields::text("{}", path);
   const bool is_model = root.has("model") || root.has("effects") || root.has("sensors") || root.has("soil");
   if (!is_model) {
-    const SoilPrior prior = loadSoilPrior(path);
-    file.model.soil = prior.mean;
-    setDeviation(file.model, prior);
+    setSoil(file.model, loadSoilPrior(path));
     return file;
   }
   root.only({"name", "soil", "model", "sensors", "wheel", "gravity_m_s2", "slip_along_travel", "effects",

@@ -26,9 +26,6 @@ std::span<const SoilField> soilFields();
 /// vector for an empty option. Throws InputError.
 std::vector<SoilPrior> soilPriors(const std::string& name_or_path);
 
-/// Returns the soils as equally probable soil classes under a wheel of width_m > 0.
-SoilMixture mixtureOf(const std::vector<SoilPrior>& soils, double width_m);
-
 /// Returns the soils as equally probable priors of (c, tan phi).
 std::vector<StrengthPrior> strengthPriors(const std::vector<SoilPrior>& soils);
 

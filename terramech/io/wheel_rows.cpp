@@ -119,12 +119,6 @@ void leaveOutWithoutSlipAngle(Telemetry& telemetry) {
   refuseAll(telemetry.source, telemetry.rejected);
 }
 
-std::vector<WheelReading> WheelRows::readings() const {
-  std::vector<WheelReading> readings;
-  for (std::size_t k = 0; k < samples.size(); ++k) readings.push_back({wheels[k], samples[k]});
-  return readings;
-}
-
 WheelRows readWheelRows(const TableFile& file, const WheelRowOptions& options, const ProgressMonitor& watch) {
   TelemetryOptions reading{.required = {"load_N", "torque_Nm", "sinkage_m"}};
   if (options.needs_slip) reading.required.emplace_back("slip");

@@ -22,8 +22,6 @@ struct WheelRows {
   std::vector<std::string> ignored;  ///< names of numeric columns of the file that are not used
   /// Rows that the reader or the estimation method rejected, in the order of the file.
   std::vector<RejectedRow> rejected;
-  /// Returns the samples with their wheels.
-  std::vector<WheelReading> readings() const;
 };
 
 /// Options of readWheelRows().

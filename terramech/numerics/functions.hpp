@@ -113,9 +113,4 @@ double normalProbability(double x);
 /// 0 < p < 1.
 double normalQuantile(double p);
 
-/// Returns the first `count` points of the Halton sequence in the open unit cube of dimension `rows`, one
-/// point per column (bases 2, 3, 5, 7, ...). The points are evenly spread and deterministic, so that
-/// integrals over a posterior need no random seed. Throws std::invalid_argument for more than eight rows.
-Eigen::MatrixXd evenPoints(Eigen::Index rows, Eigen::Index count);
-
 }  // namespace talus::terramech

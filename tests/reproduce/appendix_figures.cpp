@@ -22,7 +22,7 @@ using namespace terramech;
 
 ThesisFigure shearCurve() {
   Series janosi = line("Janosi-Hanamoto (A.4)"), plastic = line("elasto-plastic (A.3)");
-  const Soil soil = soilOf(middle(2));
+  const Soil soil = middle(2);
   constexpr double kNormal_Pa = 1e4;
   const double strength = shearStrength_Pa(soil, kNormal_Pa);
   double apart = 0.0;
@@ -49,7 +49,7 @@ ThesisFigure shearCurve() {
 }
 
 ThesisFigure bekkerStress() {
-  const Soil soil = soilOf(middle(0));
+  const Soil soil = middle(0);
   Series wong = line("Wong and Reece (C.2, C.3)"), bekker = line("Bekker (C.1)");
   bekker.dashed = true;
   double above = 0.0;
@@ -86,9 +86,9 @@ ThesisFigure stresses() {
   std::vector<Plot> plots;
   double worst = 0.0;
   for (const std::size_t soil_class : {0U, 1U}) {
-    const ContactSoil soil = middle(soil_class);
+    const Soil soil = middle(soil_class);
     const WheelSample s = drive(soil, 80.0, 0.5);
-    const auto exact = stressDistribution(soilOf(soil), kThesisWheel, {.load_N = 80.0, .slip = 0.5});
+    const auto exact = stressDistribution(soil, kThesisWheel, {.load_N = 80.0, .slip = 0.5});
     const auto m = linearOffsetStresses(kThesisWheel, s, soil.cohesion_Pa, soil.shear_modulus_m);
     std::vector<Series> shown = lines({"normal", "shear", "normal, linear", "shear, linear-offset"});
     shown[2].dashed = shown[3].dashed = true;
@@ -215,7 +215,7 @@ ThesisFigure sinkageOverSlip() {
   std::vector<Series> shown;
   double growth = 0.0;
   for (std::size_t k = 0; k < 4; ++k) {
-    shown.push_back(k == 0 ? points("sand") : line(thesisSoils()[k].name));  // loam hides sand: k is the same
+    shown.push_back(k == 0 ? points("sand") : line(kThesisSoils[k].name));  // loam hides sand: k is the same
     for (int i = 1; i <= 10; ++i) put(shown.back(), 0.1 * i, 1e3 * drive(middle(k), 80.0, 0.1 * i).sinkage_m);
     growth = std::max(growth, shown.back().y[7] / shown.back().y[1]);
   }

@@ -5,7 +5,6 @@
 #include <thesis_runs.hpp>
 
 #include <talus/common/common.hpp>
-#include <talus/terramech/estimate/soil_estimation.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>
 
 #include "figure_parts.hpp"
@@ -24,7 +23,7 @@ ThesisFigure straightStresses(std::uint64_t seed) {
   ThesisRuns runs(seed);
   for (int count = 0; count < kSoils;) {
     const ThesisRun run = runs.next({.noise = 0.0});
-    if (thesisSoils()[static_cast<std::size_t>(run.soil_class)].name != "clay") continue;
+    if (run.soil.name != "clay") continue;
     ++count;
     MohrCoulombLine through;
     for (const WheelSample& s : run.samples)
@@ -57,7 +56,7 @@ ThesisFigure straightStresses(std::uint64_t seed) {
 }
 
 ThesisFigure coefficients(std::uint64_t seed) {
-  const ContactSoil soil = middle(2);
+  const Soil soil = middle(2);
   const double t = std::tan(soil.friction_angle_rad);
   std::vector<Series> terms = lines({"M1 c tan(phi)", "M2 c", "M3 tan(phi)", "M4"});
   for (int k = 2; k <= 8; ++k) {
@@ -173,18 +172,15 @@ ThesisFigure window(std::uint64_t seed) {
   for (int k = 0; k < kSoils; ++k) {
     const ThesisRun run = runs.next({.noise = 0.05, .samples = counts.back()});
     MohrCoulombLine through;
-    SoilFilter filter(kThesisWheel, thesisSoils(),
-                      {.fit = {.noise = {}, .outlier_share = 0.01, .draws = 64}});
     for (std::size_t at = 0, i = 0; i < run.samples.size(); ++i) {
       through.add(linearOffset(kThesisWheel, run.samples[i], run.soil.shear_modulus_m).pair());
-      filter.add(run.samples[i]);
       if (static_cast<int>(i) + 1 != counts[at]) continue;
       const ShearStrength fit = through.estimate();
-      const SoilPosterior p = filter.posterior();
+      const Soil ours = soilFrom({run.samples.data(), i + 1}, thesisPriors(), 0.05).model.soil;
       offset_c[at] += std::pow(fit.cohesion_Pa - run.soil.cohesion_Pa, 2) / kSoils;
       offset_phi[at] += std::pow(fit.frictionAngle_rad() - run.soil.friction_angle_rad, 2) / kSoils;
-      ours_c[at] += std::pow(p.mean.cohesion_Pa - run.soil.cohesion_Pa, 2) / kSoils;
-      ours_phi[at] += std::pow(p.mean.friction_angle_rad - run.soil.friction_angle_rad, 2) / kSoils;
+      ours_c[at] += std::pow(ours.cohesion_Pa - run.soil.cohesion_Pa, 2) / kSoils;
+      ours_phi[at] += std::pow(ours.friction_angle_rad - run.soil.friction_angle_rad, 2) / kSoils;
       ++at;
     }
   }

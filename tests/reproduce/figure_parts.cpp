@@ -1,8 +1,10 @@
 #include "figure_parts.hpp"
 
+#include <array>
 #include <cmath>
 
 #include <talus/terramech/contact/wheel_on_soil.hpp>
+#include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>
 
 namespace talus::reproduce {
@@ -10,12 +12,12 @@ namespace talus::reproduce {
 using namespace cli;
 using namespace terramech;
 
-ContactSoil middle(std::size_t soil_class) {
-  return thesisSoils()[soil_class].at(SoilVector::Constant(0.5));
+Soil middle(std::size_t soil_class) {
+  return kThesisSoils[soil_class].middle();
 }
 
-WheelSample drive(const ContactSoil& soil, double load, double slip) {
-  const WheelForces f = equilibrium(soilOf(soil), kThesisWheel, {.load_N = load, .slip = slip});
+WheelSample drive(const Soil& soil, double load, double slip) {
+  const WheelForces f = equilibrium(soil, kThesisWheel, {.load_N = load, .slip = slip});
   return {load, f.torque_Nm, f.sinkage_m, slip};
 }
 
@@ -52,6 +54,26 @@ FittedPoints fittedPoints(const ThesisRun& run, double modulus, const std::strin
   }
   f.fit = through.estimate();
   return f;
+}
+
+std::vector<SoilPrior> thesisPriors() {
+  std::vector<SoilPrior> priors;
+  for (const char* name : {"sand", "clay", "loam", "firm_soil"}) priors.push_back(soilPriors(name).front());
+  return priors;
+}
+
+ModelSoil soilFrom(std::span<const WheelSample> samples, const std::vector<SoilPrior>& priors, double noise) {
+  Telemetry table;
+  table.source = "simulated";
+  for (const char* name : {"load_N", "torque_Nm", "sinkage_m", "slip"}) table.numbers.push_back({name, {}});
+  for (const WheelSample& s : samples) {
+    const std::array row{s.load_N, s.torque_Nm, s.sinkage_m, s.slip};
+    for (std::size_t k = 0; k < row.size(); ++k) table.numbers[k].values.push_back(row[k]);
+    table.lines.push_back(table.lines.size() + 2);
+  }
+  RefinedModel model;
+  model.wheel = kThesisWheel;
+  return soilUnder(model, makeTrial(table, model), {.prior = priors, .noise = noise});
 }
 
 ThesisRun clayRun(std::uint64_t seed, double noise) {

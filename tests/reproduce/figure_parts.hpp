@@ -1,11 +1,13 @@
 #pragma once
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <thesis_runs.hpp>
 
+#include <talus/terramech/calibration/tables/method_estimates.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>
 
 #include "thesis_figures.hpp"
@@ -14,10 +16,10 @@
 namespace talus::reproduce {
 
 /// A soil in the middle of a class of Table 2.1; the thesis does not state which soil it used.
-terramech::ContactSoil middle(std::size_t soil_class);
+terramech::Soil middle(std::size_t soil_class);
 
 /// What a wheel of the thesis reads on a soil at a load [N] and slip.
-terramech::WheelSample drive(const terramech::ContactSoil& soil, double load_N, double slip);
+terramech::WheelSample drive(const terramech::Soil& soil, double load_N, double slip);
 
 /// An empty line, several, an empty cloud of points; and a point more.
 cli::Series line(const std::string& name);
@@ -45,6 +47,13 @@ struct FittedPoints {
   terramech::ShearStrength fit;
 };
 FittedPoints fittedPoints(const terramech::ThesisRun& run, double shear_modulus_m, const std::string& name);
+
+/// The classes of Table 2.1 as priors: mean and standard deviation of their ranges.
+std::vector<terramech::SoilPrior> thesisPriors();
+
+/// The soil from readings of the wheel of the thesis, with the given relative error [-] of each reading.
+terramech::ModelSoil soilFrom(std::span<const terramech::WheelSample> samples,
+                              const std::vector<terramech::SoilPrior>& priors, double noise);
 
 /// A clay run with the most cohesion that the seed gives.
 terramech::ThesisRun clayRun(std::uint64_t seed, double noise);

@@ -80,7 +80,7 @@ Cells spread(const std::vector<State>& all, double step) {
 ThesisFigure sameReadings(const std::vector<State>& all) {
   std::vector<Series> clouds;
   for (std::size_t k = 0; k < 4; ++k)
-    clouds.push_back({.name = thesisSoils()[k].name, .x = {}, .y = {}, .mark = Series::Mark::Points});
+    clouds.push_back({.name = kThesisSoils[k].name, .x = {}, .y = {}, .mark = Series::Mark::Points});
   for (const State& s : all) {
     if (std::abs(sinkageShare(s) - 0.2) > 0.01) continue;
     auto& cloud = clouds[static_cast<std::size_t>(s.soil_class)];
@@ -152,13 +152,13 @@ ThesisFigure testBed() {
   std::array<Bed, 2> beds{{{"bentonite", 460.0, 33.7, 1}, {"topsoil", 740.0, 44.3, 0}}};
   std::vector<Series> shown;
   for (Bed& bed : beds) {
-    ContactSoil soil = thesisSoils()[bed.soil_class].at(SoilVector::Constant(0.5));
+    Soil soil = kThesisSoils[bed.soil_class].middle();
     soil.cohesion_Pa = bed.cohesion_Pa;
     soil.friction_angle_rad = bed.friction_deg * kDegree;
     Series model{.name = std::string(bed.name) + ", model", .x = {}, .y = {}, .mark = Series::Mark::Points},
         plane{.name = std::string(bed.name) + ", Eq. 3.21", .x = {}, .y = {}};
     for (int k = 2; k <= 8; ++k) {
-      const auto f = equilibrium(soilOf(soil), kThesisWheel, {.load_N = 80.0, .slip = 0.1 * k});
+      const auto f = equilibrium(soil, kThesisWheel, {.load_N = 80.0, .slip = 0.1 * k});
       model.x.push_back(0.1 * k);
       plane.x.push_back(0.1 * k);
       model.y.push_back(f.drawbar_pull_N / 80.0);
@@ -187,11 +187,10 @@ ThesisFigure testBed() {
 ThesisFigure pullOverSlip(std::uint64_t seed) {
   std::vector<Series> shown;
   for (std::size_t k = 0; k < 4; ++k) {
-    const SoilClass soil = thesisSoils()[k];
+    const ThesisSoil& soil = kThesisSoils[k];
     shown.push_back({.name = soil.name, .x = {}, .y = {}});
     for (int i = 1; i <= 20; ++i) {
-      const auto f = equilibrium(soilOf(soil.at(SoilVector::Constant(0.5))), kThesisWheel,
-                                 {.load_N = 80.0, .slip = 0.05 * i});
+      const auto f = equilibrium(soil.middle(), kThesisWheel, {.load_N = 80.0, .slip = 0.05 * i});
       shown.back().x.push_back(0.05 * i);
       shown.back().y.push_back(f.drawbar_pull_N / 80.0);
     }
@@ -201,7 +200,7 @@ ThesisFigure pullOverSlip(std::uint64_t seed) {
   ThesisRuns runs(seed);
   constexpr int kSoils = 200;
   for (int k = 0; k < kSoils; ++k) {
-    const Soil soil = soilOf(runs.next({.noise = 0.0, .samples = 1}).soil);
+    const Soil soil = runs.next({.noise = 0.0, .samples = 1}).soil;
     std::array<double, 21> pull{};
     for (int i = 4; i <= 20; ++i) {
       pull[static_cast<std::size_t>(i)] =

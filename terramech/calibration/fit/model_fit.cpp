@@ -223,6 +223,15 @@ FitPlan fitPlan(const RefinedModel& model, bool fit_soil) {
   return plan;
 }
 
+void giveVaguePrior(RefinedModel& model) {
+  model.soil_prior_mean.clear();
+  model.soil_prior_std.clear();
+  for (const auto& [name, prior] : vagueSoil()) {
+    model.soil_prior_mean[name] = prior.value;
+    model.soil_prior_std[name] = prior.std;
+  }
+}
+
 void giveDefaultDeviations(RefinedModel& model) {
   if (!model.soil_prior_std.empty() || model.base != BaseModel::WongReece) return;
   for (const SoilParameter& p : soilParameters()) {

@@ -69,6 +69,9 @@ double misfitOf(const Eigen::VectorXd& white, const Trial& trial);
 /// is negligible if the rows determine the effect; otherwise the fitted effect is 0.
 FitPlan fitPlan(const RefinedModel& model, bool fit_soil);
 
+/// Replaces the prior of the model's soil by the vague one of fitPlan().
+void giveVaguePrior(RefinedModel& model);
+
 /// Assigns default standard deviations to the soil of a model whose file states no standard deviations
 /// (ours). The default values are half the general uncertainty of soils: cohesion 1000 Pa, friction angle
 /// 0.06 rad, n 0.125, stiffness a factor of e^1.5, K 6 mm, c1 0.04, c2 0.06.

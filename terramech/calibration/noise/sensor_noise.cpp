@@ -43,17 +43,24 @@ std::vector<Scale> scales(const Trial& trial, const Eigen::MatrixXd& residual, c
     }
     const auto k = static_cast<std::size_t>(c);
     const auto given = statedOf(stated, static_cast<Channel>(c));
+    if (!given && stated.relative) {
+      all.push_back({&noise.relative[k], *stated.relative, kStatedSpread});
+      continue;
+    }
     all.push_back({&noise.absolute[k],
                    given.value_or(std::max(0.01 * medianOf(sizes), 0.1 * medianOf(left)) + 1e-9),
                    given ? kStatedSpread : 1.0});
     all.push_back({&noise.relative[k], given ? 0.01 : 0.03, 1.0});
   }
-  all.push_back(
-      {&noise.slip_absolute, std::max(stated.slip.value_or(0.005), 1e-5), stated.slip ? kStatedSpread : 1.0});
-  if (!stated.slip) all.push_back({&noise.slip_relative, 0.02, 0.7});
-  const double load = medianOf(trial.load_N);
-  all.push_back({&noise.load_relative, stated.load_N ? std::max(*stated.load_N / load, 1e-5) : 0.02,
-                 stated.load_N ? kStatedSpread : 0.7});
+  if (stated.slip || !stated.relative)
+    all.push_back({&noise.slip_absolute, std::max(stated.slip.value_or(0.005), 1e-5),
+                   stated.slip ? kStatedSpread : 1.0});
+  if (!stated.slip)
+    all.push_back(
+        {&noise.slip_relative, stated.relative.value_or(0.02), stated.relative ? kStatedSpread : 0.7});
+  const double load = stated.load_N ? std::max(*stated.load_N / medianOf(trial.load_N), 1e-5)
+                                    : stated.relative.value_or(0.02);
+  all.push_back({&noise.load_relative, load, stated.load_N || stated.relative ? kStatedSpread : 0.7});
   return all;
 }
 

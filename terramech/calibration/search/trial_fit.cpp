@@ -10,6 +10,22 @@
 
 namespace talus::terramech {
 
+RefinedModel asDriven(RefinedModel model, const Trial& trial) {
+  constexpr double kSlopeError_rad = 0.005;
+  if (trial.moment.empty()) return model;
+  double load_N = 0.0;
+  for (const double w : trial.load_N) load_N += w / trial.rows();
+  if (!model.stated.drawbar_pull_N) model.stated.drawbar_pull_N = kSlopeError_rad * load_N;
+  const auto& columns = trial.covariates;
+  const bool has_passes = std::find(columns.begin(), columns.end(), "pass_index") != columns.end();
+  if (!has_passes || knowsPasses(model.effects)) return model;
+  model.effects.push_back({.name = "multipass_reload",
+                           .covariate = "pass_index",
+                           .channel = Channel::Sinkage,
+                           .parameters = {model.soil.rut_stiffness - 1.0, 1.0}});
+  return model;
+}
+
 Eigen::VectorXd CalibratedRows::sinkages_m() const {
   Eigen::VectorXd z(level_.rows());
   for (int row = 0; row < trial_.rows(); ++row)
@@ -115,8 +131,9 @@ void CalibratedRows::compare(const RefinedModel& model, SolvedContacts& solved) 
 }
 
 TrialFit::TrialFit(const RefinedModel& base, const Trial& trial, bool fit_soil,
-                   const std::function<bool(double)>& go_on)
+                   const std::function<bool(double)>& go_on, bool fit_effects)
     : fit_soil_(fit_soil),
+      fit_effects_(fit_effects),
       model_(base),
       prior_modulus_(base.soil.cohesive_modulus + base.soil.frictional_modulus),
       rows_(trial) {
@@ -142,6 +159,7 @@ void TrialFit::refresh() {
 
 FitPlan TrialFit::planFor(const RefinedModel& model) const {
   FitPlan plan = fitPlan(model, fit_soil_);
+  if (!fit_effects_) std::erase_if(plan.free, [](const FittedParameter& p) { return p.effect >= 0; });
   plan.prior_modulus = prior_modulus_;
   plan.misfit = misfit_;
   return plan;

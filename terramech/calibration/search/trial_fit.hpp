@@ -16,6 +16,11 @@
 
 namespace talus::terramech {
 
+/// Returns a model with the prior information on a rover's own drive, and the given model for other tables.
+/// The pull of a drive follows from the slope and has the error of an inclinometer, 0.3 degrees unless stated
+/// (ours). Wheels behind another wheel drive in a rut (rut.hpp), whose stiffness is fitted.
+RefinedModel asDriven(RefinedModel model, const Trial& trial);
+
 /// Rows of a trial (table of measured rows) relative to a wheel model: most likely slip and load of each row,
 /// residuals, and sensor noise estimated from the residuals. Arguments named `solved` are the cache of
 /// predictRows().
@@ -73,9 +78,10 @@ class CalibratedRows {
 class TrialFit {
  public:
   /// Estimates the noise for `base` and fits its free parameters, or all soil parameters if `fit_soil` is
-  /// true. `go_on` is called before each round of the fit; a return value of false ends the fit.
+  /// true. `go_on` is called before each round of the fit; a return value of false ends the fit. If
+  /// `fit_effects` is false, the effects of the models are known and not fitted.
   TrialFit(const RefinedModel& base, const Trial& trial, bool fit_soil,
-           const std::function<bool(double)>& go_on);
+           const std::function<bool(double)>& go_on, bool fit_effects = true);
 
   const RefinedModel& model() const { return model_; }
   const CalibratedRows& rows() const { return rows_; }
@@ -123,7 +129,7 @@ class TrialFit {
   NullModel standing(const RefinedModel& model, const FitPlan& plan, const Eigen::MatrixXd& residual,
                      SolvedContacts& solved) const;
 
-  bool fit_soil_;
+  bool fit_soil_, fit_effects_;
   RefinedModel model_;
   double prior_modulus_;  ///< k_c + k_phi of the base model, at which log_stiffness is 0
   CalibratedRows rows_;

@@ -2,6 +2,7 @@
 
 #include <talus/common/common.hpp>
 #include <talus/terramech/calibration.hpp>
+#include <talus/terramech/calibration/tables/method_estimates.hpp>
 #include <talus/terramech/estimate/drawbar_pull.hpp>
 #include <talus/terramech/estimate/model_pull.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
@@ -16,21 +17,16 @@ void judge(Assessment& a, const CategoryThresholds& limits) {
   a.probability = categoryProbability({a.pull, a.sinkage_over_radius}, limits);
 }
 
-// Forecasts the pull at other slips from the joint posterior of all rows, at the load of each row. The soil is
-// fitted to smooth wheels, so that its strength contains the thrust of the lugs.
+// Forecasts the pull at other slips from the soil of all rows, at the load of each row. The soil is fitted to
+// smooth wheels, so that its strength contains the thrust of the lugs.
 void extrapolate(const AssessOptions& options, const WheelRows& rows, const ProgressMonitor& watch,
                  std::vector<Assessment>& result) {
-  SoilFitOptions fit{.noise = ReadingErrors::relative(std::max(options.noise, 1e-3)), .watch = watch};
-  std::vector<WheelReading> readings = rows.readings();
-  std::erase_if(readings, [](const WheelReading& r) { return r.sample.sinkage_m >= r.wheel.radius_m; });
-  if (readings.empty())
-    throw InputError({rows.source, "all wheels sank to the axle or deeper, where the wheel model ends",
-                      "leave out --extrapolate"});
-  PullForecasts forecasts(fitSoil(readings, thesisSoilsOrOther(), fit), options.reference_slip);
+  const TableRows table = tableRows(options.table, "", options.rover, watch);
+  const RefinedModel truth = groundTruthOf(soilUnder(table.model, table.trial, {}, watch).model);
   for (std::size_t k = 0; k < result.size() && !watch.stopped(); ++k) {
-    Wheel smooth = rows.wheels[k];
-    smooth.lug_thrust = 0.0;
-    result[k].forecast = forecasts.at(smooth, rows.samples[k].load_N);
+    const WheelState state{
+        .wheel = rows.wheels[k], .load_N = rows.samples[k].load_N, .slip = rows.samples[k].slip};
+    result[k].forecast = forecastPull(truth, state, options.reference_slip);
     watch.report(static_cast<double>(k) / static_cast<double>(result.size()));
   }
   watch.report(1.0);

@@ -4,14 +4,18 @@
 #include <limits>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 #include <talus/terramech/calibration.hpp>
 #include <talus/terramech/calibration/fit/model_fit.hpp>
+#include <talus/terramech/calibration/search/trace_search.hpp>
+#include <talus/terramech/calibration/search/trial_fit.hpp>
 #include <talus/terramech/calibration/tables/method_estimates.hpp>
-#include <talus/terramech/estimate/soil_estimation.hpp>
+#include <talus/terramech/io/model_file.hpp>
 #include <talus/terramech/io/soil_library.hpp>
 #include <talus/terramech/io/wheel_rows.hpp>
+#include <talus/terramech/numerics/functions.hpp>
 #include <talus/terramech/strength/bevameter.hpp>
 #include <talus/terramech/strength/shear_modulus.hpp>
 #include <talus/terramech/strength/strength_lines.hpp>
@@ -208,105 +212,14 @@ SoilEstimate lineEstimate(const EstimateOptions& options, const ProgressMonitor&
 
 namespace {
 
-SoilMixture priorOf(const EstimateOptions& options, double width_m) {
-  SoilMixture prior =
-      options.prior.empty() ? thesisSoilsOrOther() : mixtureOf(soilPriors(options.prior), width_m);
-  if (const auto stated = statedModulus(options)) {
-    for (SoilClass& soil : prior) soil.parameters[kShear] = Marginal::fixed(*stated);
-  }
-  return prior;
-}
-
-void take(const SoilPosterior& p, SoilEstimate& estimate) {
-  estimate.cohesion_Pa = p.mean.cohesion_Pa;
-  estimate.friction_angle_rad = p.mean.friction_angle_rad;
-  estimate.tan_friction = p.tan_friction;
-  estimate.shear_modulus_m = p.mean.shear_modulus_m;
-  estimate.covariance = p.strength_covariance;
-  estimate.sinkage_exponent = p.mean.sinkage_exponent;
-  estimate.frictional_modulus = p.mean.sinkage_modulus;
-  estimate.unseen = p.unseen;
-}
-
-// Processes rows one by one in constant memory.
-SoilPosterior filtered(const WheelRows& rows, const SoilMixture& prior, const SoilFitOptions& fit,
-                       std::vector<RunningSoil>& running, const ProgressMonitor& watch) {
-  SoilFilter filter(rows.wheel, prior, {.fit = fit});
-  SoilPosterior last;
-  for (std::size_t k = 0; k < rows.samples.size(); ++k) {
-    if (watch.stopped()) break;
-    watch.report(static_cast<double>(k) / static_cast<double>(rows.samples.size()));
-    filter.add({rows.wheels[k], rows.samples[k]});
-    last = filter.posterior();
-    running.push_back({.line = rows.lines[k],
-                       .cohesion_Pa = last.mean.cohesion_Pa,
-                       .friction_angle_rad = last.mean.friction_angle_rad,
-                       .shear_modulus_m = last.mean.shear_modulus_m,
-                       .covariance = last.strength_covariance});
-  }
-  watch.report(1.0);
-  return last;
-}
-
-// Mean square of the whitened residuals above which the estimate has a warning.
+// Mean square of the residuals over their errors above which the estimate has a warning.
 constexpr double kMisfit = 3.0;
 
 // Error over load or radius that is acceptable for a rigid-wheel model.
 constexpr double kCoarse = 0.1;
 
-// Adds warnings about assumptions of the posterior that the rows contradict.
-void warnUncertain(const WheelRows& rows, const SoilPosterior& posterior,
-                   std::vector<std::string>& warnings) {
-  if (posterior.misfit > kMisfit) {
-    warnings.push_back(fmt::format(
-        "no soil of the prior explains the readings (misfit {:.1f}, 1 expected); trace these rows, "
-        "widen --prior, or increase --noise",
-        posterior.misfit));
-  }
-  const auto [narrow, wide] = std::ranges::minmax_element(rows.wheels, {}, &Wheel::width_m);
-  if (narrow->width_m < wide->width_m) {
-    warnings.push_back(
-        fmt::format("k = k_c/b + k_phi is assumed constant for wheels {:g} to {:g} m wide; if k_c matters, "
-                    "split the file by width",
-                    narrow->width_m, wide->width_m));
-  }
-}
-
-}  // namespace
-
-SoilEstimate posteriorEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
-  const WheelRows rows =
-      readWheelRows(options.table, {.rover = options.rover, .needs_slip = true, .deepest = 1.0}, watch);
-  const SoilMixture prior = priorOf(options, rows.wheel.width_m);
-  SoilEstimate estimate;
-  estimate.rejected = rows.rejected;
-  estimate.ignored = rows.ignored;
-  estimate.rows_used = rows.samples.size();
-  SoilFitOptions fit;
-  fit.noise = ReadingErrors::relative(options.noise);
-  fit.draws = options.recursive ? 128 : 512;
-  fit.watch = watch;
-  estimate.posterior = options.recursive ? filtered(rows, prior, fit, estimate.running, watch)
-                                         : fitSoil(rows.readings(), prior, fit);
-  if (watch.stopped()) return estimate;
-  take(*estimate.posterior, estimate);
-  if (const std::string why = estimate.implausible(); !why.empty())
-    throw std::domain_error(fmt::format("{}: {}; trace these rows", options.table.path, why));
-  warnUncertain(rows, *estimate.posterior, estimate.warnings);
-  for (const SoilClass& soil : prior) estimate.class_names.push_back(soil.name);
-  return estimate;
-}
-
-namespace {
-
-RefinedModel modelOf(const EstimateOptions& options) {
-  const RefinedModel model = baseModel(options.model, options.rover).model;
-  if (model.base != BaseModel::WongReece)
-    throw InputError({.where = options.model,
-                      .reason = "its base is linear-formula, which has no soil",
-                      .remedy = "use a model with the base wong-reece"});
-  return model;
-}
+// Greatest number of rows of a fit, as in traceResiduals().
+constexpr int kMostRows = 1000;
 
 void refuseWhatDoesNotGo(const EstimateOptions& options) {
   const auto refuse = [](const char* where, const char* reason, const char* remedy) {
@@ -316,39 +229,45 @@ void refuseWhatDoesNotGo(const EstimateOptions& options) {
     refuse("--model", "its effects act on the contact stresses, which this method does not solve",
            "use --method wong-reece, or remove the option");
   if (options.recursive)
-    refuse("--recursive", "cannot be combined with --model or with side forces, which are fitted all at once",
-           "remove one of the two");
+    refuse("--recursive", "cannot be combined with --method wong-reece, which fits all rows at once",
+           "remove the option, or use --method linear-offset");
 }
 
 ModelSoilOptions howOf(const EstimateOptions& options) {
-  ModelSoilOptions how{.noise = options.noise};
+  ModelSoilOptions how{.prior = soilPriors(options.prior), .noise = options.noise};
   how.shear_modulus_m = options.shear_modulus.empty() ? std::nullopt : statedModulus(options);
-  if (options.prior.empty()) return how;
-  how.prior = loadModel(options.prior).model;
-  if (how.prior->soil_prior_std.empty())
-    throw InputError({.where = "--prior " + options.prior,
-                      .reason = "gives no standard deviation, so no parameter is free",
-                      .remedy = "write {mean: ..., std: ...} for each unknown parameter"});
+  for (const SoilPrior& soil : how.prior) {
+    RefinedModel model;
+    setSoil(model, soil);
+    if (model.soil_prior_std.empty())
+      throw InputError({.where = "--prior " + options.prior,
+                        .reason = "gives no standard deviation, so no parameter is free",
+                        .remedy = "write {mean: ..., std: ...} for each unknown parameter"});
+  }
   return how;
 }
 
 SoilEstimate soilOf(const ModelSoil& found) {
+  const Soil& soil = found.model.soil;
   SoilEstimate estimate;
-  estimate.cohesion_Pa = found.soil.cohesion_Pa;
-  estimate.friction_angle_rad = found.soil.friction_angle_rad;
-  estimate.tan_friction = std::tan(found.soil.friction_angle_rad);
-  estimate.shear_modulus_m = found.soil.shear_modulus_m;
-  estimate.covariance = found.strength_covariance;
-  estimate.sinkage_exponent = found.soil.sinkage_exponent;
-  estimate.cohesive_modulus = found.soil.cohesive_modulus;
-  estimate.frictional_modulus = found.soil.frictional_modulus;
+  estimate.cohesion_Pa = soil.cohesion_Pa;
+  estimate.friction_angle_rad = soil.friction_angle_rad;
+  estimate.tan_friction = std::tan(soil.friction_angle_rad);
+  estimate.shear_modulus_m = soil.shear_modulus_m;
+  estimate.shear_modulus_std_m = found.std("shear_modulus_m");
+  estimate.covariance = found.strengthCovariance();
+  estimate.sinkage_exponent = soil.sinkage_exponent;
+  estimate.cohesive_modulus = soil.cohesive_modulus;
+  estimate.frictional_modulus = soil.frictional_modulus;
   estimate.unseen = found.unseen;
+  estimate.model = found.model;
+  estimate.misfit = found.misfit;
   return estimate;
 }
 
 // Names the column without which a soil explains the rows best, if any does.
 std::string remedyFor(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& how) {
-  std::string remedy = "trace these rows, or increase --noise";
+  std::string remedy = "trace these rows";
   double least = kMisfit;
   for (int k = 0; k < kChannels; ++k) {
     const auto channel = static_cast<Channel>(k);
@@ -369,9 +288,7 @@ std::string remedyFor(const RefinedModel& model, const Trial& trial, const Model
 // or radius unexplained (root mean squares; ours). Fits to measured sand do not exceed these limits.
 void refuseUnexplained(const EstimateOptions& options, const RefinedModel& model, const Trial& trial,
                        const ModelSoil& found) {
-  RefinedModel fitted = model;
-  fitted.soil = found.soil;
-  const ChannelErrors left = rmseOf(fitted, trial),
+  const ChannelErrors left = rmseOf(found.model, trial),
                       readings = rmseOf(Eigen::MatrixXd::Zero(trial.rows(), kChannels), trial);
   std::string why = soilOf(found).implausible();
   for (std::size_t c = 0; found.misfit > kMisfit && c < kChannels; ++c)
@@ -383,143 +300,265 @@ void refuseUnexplained(const EstimateOptions& options, const RefinedModel& model
                                         remedyFor(model, trial, howOf(options))));
 }
 
+// Adds warnings about assumptions that the rows contradict.
+void warnUncertain(const Trial& trial, const ModelSoil& found, std::vector<std::string>& warnings) {
+  if (found.misfit > kMisfit)
+    warnings.push_back(fmt::format(
+        "no soil explains the readings (misfit {:.1f}, 1 expected), least of all {}; trace these rows",
+        found.misfit, kAnswers[static_cast<std::size_t>(found.worst)]));
+  const auto [narrow, wide] =
+      std::ranges::minmax_element(trial.states, {}, [](const WheelState& s) { return s.wheel.width_m; });
+  if (narrow->wheel.width_m < wide->wheel.width_m)
+    warnings.push_back(
+        fmt::format("the ratio of k_c to k_phi is that of the prior for wheels {:g} to {:g} m wide; if k_c "
+                    "matters, split the file by width",
+                    narrow->wheel.width_m, wide->wheel.width_m));
+}
+
 }  // namespace
 
-bool measuresSideForce(const TableFile& table) {
-  const Telemetry rows = readTelemetry(table);
-  const auto* angle = rows.find("slip_angle_rad");
-  const auto* force = rows.find("side_force_N");
-  const auto* load = rows.find("load_N");
-  if (angle == nullptr || force == nullptr || load == nullptr) return false;
-  double squares = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (!std::isfinite((*angle)[k]) || !std::isfinite((*force)[k])) continue;
-    if (std::abs((*angle)[k]) > kStraightUpTo_rad) return true;
-    squares += std::pow((*force)[k] / (*load)[k], 2);
-    ++count;
+TableRows tableRows(const TableFile& table, const std::string& file, const std::string& rover,
+                    const ProgressMonitor& watch) {
+  const RefinedModel given = baseModel(file, rover).model;
+  if (given.base != BaseModel::WongReece)
+    throw InputError({.where = file,
+                      .reason = "its base is linear-formula, which has no soil",
+                      .remedy = "use a model with the base wong-reece"});
+  TelemetryOptions reading{.required = {"load_N", "slip"}};
+  if (given.wheel) reading.wheel_radius_m = given.wheel->radius_m;
+  ModelRows rows = modelRows(readTelemetry(table, reading, watch), given);
+  if (rows.trial.rows() == 0)
+    throw InputError(
+        {.where = table.path, .reason = "in every row the sinkage reaches the axle", .remedy = ""});
+  TableRows all{.model = rows.model, .trial = rows.trial, .rejected = rows.rejected, .warnings = {}};
+  std::ranges::stable_sort(all.rejected, {}, &RejectedRow::line);
+  if (rows.beyond_axle.rows() > 0)
+    all.warnings.push_back(
+        fmt::format("{} rows with sinkage at or above the axle were excluded", rows.beyond_axle.rows()));
+  if (rows.trial.rows() > kMostRows) {
+    all.trial = subset(rows.trial, rowSample(rows.trial, kMostRows, 1));
+    all.warnings.push_back(
+        fmt::format("{} of {} rows were sampled for the fit", all.trial.rows(), rows.trial.rows()));
   }
-  return squares > kCoarse * kCoarse * count;
+  return all;
 }
 
 SoilEstimate modelEstimate(const EstimateOptions& options, const ProgressMonitor& watch) {
   refuseWhatDoesNotGo(options);
-  const RefinedModel given = modelOf(options);
-  TelemetryOptions reading{.required = {"load_N", "slip"}};
-  if (given.wheel) reading.wheel_radius_m = given.wheel->radius_m;
-  const auto [model, trial, beyond_axle, rejected] =
-      modelRows(readTelemetry(options.table, reading, watch), given);
-  if (trial.rows() == 0)
-    throw InputError(
-        {.where = options.table.path, .reason = "in every row the sinkage reaches the axle", .remedy = ""});
-  const ModelSoil found = soilUnder(model, trial, howOf(options));
+  const TableRows rows = tableRows(options.table, options.model, options.rover, watch);
+  const ModelSoilOptions how = howOf(options);
+  const ModelSoil found = soilUnder(rows.model, rows.trial, how, watch);
   SoilEstimate estimate = soilOf(found);
-  estimate.rejected = rejected;
-  std::ranges::stable_sort(estimate.rejected, {}, &RejectedRow::line);
-  estimate.rows_used = static_cast<std::size_t>(trial.rows());
-  for (const Effect& effect : model.effects) estimate.effects.push_back(effect.name);
-  refuseUnexplained(options, model, trial, found);
-  if (found.misfit > kMisfit)
-    estimate.warnings.push_back(fmt::format(
-        "no soil explains the readings (misfit {:.1f}, 1 expected); trace these rows, or increase --noise",
-        found.misfit));
-  if (beyond_axle.rows() > 0)
-    estimate.warnings.push_back(
-        fmt::format("{} rows with sinkage at or above the axle were excluded", beyond_axle.rows()));
+  if (watch.stopped()) return estimate;
+  for (std::size_t k = 0; k < how.prior.size(); ++k)
+    estimate.classes.emplace_back(how.prior[k].mean.name, found.probability[k]);
+  estimate.rejected = rows.rejected;
+  estimate.warnings = rows.warnings;
+  estimate.rows_used = static_cast<std::size_t>(rows.trial.rows());
+  for (const Effect& effect : rows.model.effects) estimate.effects.push_back(effect.name);
+  refuseUnexplained(options, rows.model, rows.trial, found);
+  warnUncertain(rows.trial, found, estimate.warnings);
   return estimate;
 }
 
 namespace {
 
 constexpr double kUndeterminedShare = 0.9;  // greatest posterior over prior std of a determined parameter
+constexpr double kTypicalError = 0.05;      // relative error of a reading whose error is not stated
 
-int indexOf(const std::string& name) {
+using SoilValues = Eigen::VectorXd;  // parameters in the order of soilParameters()
+
+int indexOf(std::string_view name) {
   const auto& all = soilParameters();
   return static_cast<int>(std::ranges::find_if(all, [&](const SoilParameter& p) { return p.name == name; }) -
                           all.begin());
 }
 
-SensorNoise noiseOf(const RefinedModel& model, double relative) {
-  SensorNoise noise = model.noise;
-  for (std::size_t c = 0; c < kChannels; ++c)
-    if (noise.absolute[c] == 0.0 && noise.relative[c] == 0.0) noise.relative[c] = relative;
-  if (noise.slip_absolute == 0.0 && noise.slip_relative == 0.0) noise.slip_relative = relative;
-  if (noise.load_relative == 0.0) noise.load_relative = relative;
-  return noise;
+// One soil of the prior, its fit, or the mixture of several.
+struct SoilNormal {
+  double weight = 1.0;
+  Soil soil;
+  SoilValues mean = SoilValues::Zero(static_cast<Eigen::Index>(soilParameters().size()));
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+};
+
+// The stiffness of `mean` is the logarithm of k under a wheel of width_m.
+SoilNormal normalOf(const Soil& soil, double width_m) {
+  SoilNormal normal{.soil = soil};
+  for (std::size_t k = 0; k < soilParameters().size(); ++k)
+    normal.mean[static_cast<Eigen::Index>(k)] =
+        soilParameters()[k].field ? soilParameters()[k].get(soil) : std::log(sinkageModulus(soil, width_m));
+  return normal;
 }
 
-/// Plan of a fit with only the soil parameters free.
-FitPlan planOf(const RefinedModel& model, const ModelSoilOptions& options) {
-  FitPlan plan = options.prior ? fitPlan(*options.prior, false) : fitPlan(model, true);
-  const int shear = options.shear_modulus_m ? indexOf("shear_modulus_m") : -1;
-  std::erase_if(plan.free, [&](const FittedParameter& p) { return p.effect >= 0 || p.index == shear; });
+SoilNormal priorOf(const RefinedModel& model, double width_m) {
+  SoilNormal normal = normalOf(model.soil, width_m);
+  for (const auto& [name, std] : model.soil_prior_std) {
+    const int k = indexOf(name);
+    normal.covariance(k, k) = std * std;
+  }
+  return normal;
+}
+
+// Mean and covariance of a mixture; weights have sum 1.
+SoilNormal mixtureOf(const std::vector<SoilNormal>& parts, double width_m) {
+  SoilNormal all{.soil = std::ranges::max_element(parts, {}, &SoilNormal::weight)->soil};
+  for (const SoilNormal& part : parts) all.mean += part.weight * part.mean;
+  for (const SoilNormal& part : parts) {
+    const SoilValues away = part.mean - all.mean;
+    all.covariance += part.weight * (part.covariance + away * away.transpose());
+  }
+  for (std::size_t k = 0; k < soilParameters().size(); ++k) {
+    const SoilParameter& p = soilParameters()[k];
+    const double mean = all.mean[static_cast<Eigen::Index>(k)];
+    p.set(all.soil, p.field ? mean : mean - std::log(sinkageModulus(all.soil, width_m)));
+  }
+  return all;
+}
+
+// Fits the soil of `start` under its prior with the errors of `fit`; the weight is the logarithm of the evidence.
+SoilNormal fitted(const TrialFit& fit, RefinedModel start, double width_m) {
+  const CalibratedRows& rows = fit.rows();
+  FitPlan plan = fitPlan(start, false);
+  std::erase_if(plan.free, [](const FittedParameter& p) { return p.effect >= 0; });
   plan.iterations = 40;
-  return plan;
+  plan.misfit = misfitOf(rows.white(), rows.trial());
+  SolvedContacts solved = fit.solved();
+  const Fit best = fitModel(start, rows.trial(), rows.whitening(), plan, solved);
+  const Eigen::MatrixXd covariance =
+      parameterCovariance(best.model, rows.trial(), rows.whitening(), plan, solved);
+  SoilNormal normal = normalOf(best.model.soil, width_m);
+  normal.weight = -0.5 * best.cost() / plan.misfit;
+  for (std::size_t i = 0; i < plan.free.size(); ++i) {
+    normal.weight -= std::log(plan.soil_prior.at(plan.free[i].index).std);
+    for (std::size_t j = 0; j < plan.free.size(); ++j)
+      normal.covariance(plan.free[i].index, plan.free[j].index) =
+          covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> root(covariance);
+  normal.weight += 0.5 * root.vectorD().array().max(1e-300).log().sum();
+  return normal;
 }
 
-/// Covariance of cohesion c and tan phi (phi: friction angle) from that of the fitted parameters; zero for
-/// parameters that are not fitted.
-Eigen::Matrix2d strengthCovariance(const FitPlan& plan, const Eigen::MatrixXd& covariance, const Soil& soil) {
-  const double by_phi = 1.0 + std::pow(std::tan(soil.friction_angle_rad), 2);
-  const std::array<int, 2> index{indexOf("cohesion_Pa"), indexOf("friction_angle_rad")};
-  const std::array<double, 2> slope{1.0, by_phi};
-  Eigen::Matrix2d strength = Eigen::Matrix2d::Zero();
-  for (std::size_t i = 0; i < plan.free.size(); ++i)
-    for (std::size_t j = 0; j < plan.free.size(); ++j)
-      for (std::size_t a = 0; a < 2; ++a)
-        for (std::size_t b = 0; b < 2; ++b)
-          if (plan.free[i].index == index[a] && plan.free[j].index == index[b])
-            strength(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
-                slope[a] * slope[b] * covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-  return strength;
+void normaliseWeights(std::vector<SoilNormal>& parts) {
+  const double most = std::ranges::max_element(parts, {}, &SoilNormal::weight)->weight;
+  double sum = 0.0;
+  for (SoilNormal& part : parts) sum += part.weight = std::exp(part.weight - most);
+  for (SoilNormal& part : parts) part.weight /= sum;
+}
+
+// Writes the mean square of the residuals over the stated errors of the sensors.
+void compareWithStated(const Trial& trial, double noise, ModelSoil& found) {
+  const StatedSensors& stated = found.model.stated;
+  const double relative = noise > 0.0 ? noise : kTypicalError;
+  SensorNoise errors;
+  const std::array given{stated.drawbar_pull_N, stated.sinkage_m, stated.torque_Nm, stated.side_force_N};
+  for (std::size_t c = 0; c < kChannels; ++c)
+    (given[c] ? errors.absolute[c] : errors.relative[c]) = given[c].value_or(relative);
+  (stated.slip ? errors.slip_absolute : errors.slip_relative) = stated.slip.value_or(relative);
+  errors.load_relative = relative;
+  Trial rows = asMeasured(trial);
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    rows.slip_variance[row] = std::pow(errors.slipStd(trial.slip[r]), 2);
+    rows.load_variance[row] = std::pow(stated.load_N ? *stated.load_N / trial.load_N[r] : relative, 2);
+  }
+  SolvedContacts solved;
+  const Eigen::MatrixXd level = predictRows(found.model, rows, solved);
+  const Whitening white = whitening(rows, level, inputSlopes(found.model, rows, solved), errors);
+  const Eigen::MatrixXd residual = trial.measured - level;
+  const auto readings = static_cast<double>(residual.array().isFinite().count());
+  found.misfit = white.apply(residual).squaredNorm() /
+                 std::max(1.0, readings - static_cast<double>(found.model.fitted.size()));
+  const Eigen::VectorXd alone = white.marginal(residual);
+  std::array<double, kChannels> sum{};
+  for (Eigen::Index k = 0; k < alone.size(); ++k)
+    sum[static_cast<std::size_t>(k % kChannels)] += alone[k] * alone[k];
+  found.worst = static_cast<Channel>(std::ranges::max_element(sum) - sum.begin());
+}
+
+void listUnseen(const SoilNormal& prior, const SoilNormal& posterior, ModelSoil& found) {
+  for (const std::string& name : soilAtBounds(found.model))
+    found.unseen.push_back(name + ": ended at the limit of its range");
+  for (const FittedParameter& p : found.model.fitted) {
+    const std::string name = soilParameters()[static_cast<std::size_t>(p.index)].name;
+    const double before = prior.covariance(p.index, p.index), after = posterior.covariance(p.index, p.index);
+    if (name != "c1" && name != "c2" && after > kUndeterminedShare * kUndeterminedShare * before)
+      found.unseen.push_back(name + ": the posterior is almost as wide as the prior; vary " +
+                             (name == "shear_modulus_m" ? "the slip, mainly at low slip" : "the load"));
+  }
 }
 
 }  // namespace
 
-ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& options) {
-  const FitPlan plan = planOf(model, options);
-  RefinedModel start = model;
-  start.noise = noiseOf(model, options.noise);
-  // Slip and load of each row are fitted from their readings alone.
-  Trial rows = trial;
-  for (Eigen::Index row = 0; row < rows.rows(); ++row)
-    rows.slip_variance[row] = std::pow(start.noise.slipStd(trial.slip[static_cast<std::size_t>(row)]), 2);
-  rows.load_variance.setConstant(std::pow(start.noise.load_relative, 2));
-  SolvedContacts solved;
-  const auto whiteningBy = [&](const RefinedModel& at) {
-    const Eigen::MatrixXd level = predictRows(at, rows, solved);
-    return whitening(rows, level, inputSlopes(at, rows, solved), at.noise);
+double ModelSoil::std(const std::string& parameter) const {
+  const std::size_t n = model.fitted.size();
+  for (std::size_t k = 0; k < n; ++k)
+    if (model.fitted[k].index == indexOf(parameter)) return std::sqrt(model.covariance[k * (n + 1)]);
+  return 0.0;
+}
+
+Eigen::Matrix2d ModelSoil::strengthCovariance() const {
+  const std::array index{indexOf("cohesion_Pa"), indexOf("friction_angle_rad")};
+  const std::array slope{1.0, 1.0 + std::pow(std::tan(model.soil.friction_angle_rad), 2)};
+  const std::size_t n = model.fitted.size();
+  Eigen::Matrix2d strength = Eigen::Matrix2d::Zero();
+  for (std::size_t k = 0; k < n * n; ++k)
+    for (std::size_t a = 0; a < 2; ++a)
+      for (std::size_t b = 0; b < 2; ++b)
+        if (model.fitted[k / n].index == index[a] && model.fitted[k % n].index == index[b])
+          strength(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
+              slope[a] * slope[b] * model.covariance[k];
+  return strength;
+}
+
+ModelSoil soilUnder(const RefinedModel& model, const Trial& trial, const ModelSoilOptions& options,
+                    const ProgressMonitor& watch) {
+  RefinedModel start = asDriven(model, trial);
+  if (options.noise > 0.0) start.stated.relative = options.noise;
+  start.soil = unknownSoil().model.soil;
+  giveVaguePrior(start);
+  const double width_m = trial.states.front().wheel.width_m;
+  const auto hold = [&](RefinedModel& at) {
+    if (!options.shear_modulus_m) return;
+    at.soil.shear_modulus_m = *options.shear_modulus_m;
+    at.soil_prior_std.erase("shear_modulus_m");
   };
-  const auto fittedFrom = [&](const Soil& soil) {
-    Fit fit{.model = start};
-    fit.model.soil = soil;
-    if (options.shear_modulus_m) fit.model.soil.shear_modulus_m = *options.shear_modulus_m;
-    for (int round = 0; round < 3; ++round) {
-      const Whitening white = whiteningBy(fit.model);
-      fit = fitModel(fit.model, rows, white, plan, solved);
-    }
-    return fit;
+  hold(start);
+  RoundProgress rounds;
+  const auto go_on = [&](double share) {
+    watch.report(rounds.at(share));
+    return !watch.stopped();
   };
-  Fit best = fittedFrom(options.prior ? options.prior->soil : unknownSoil().model.soil);
-  // With a prior, the soil of the model is not a start value, because the prior may fix parameters.
-  if (!options.prior)
-    if (const Fit own = fittedFrom(model.soil); own.cost() < best.cost()) best = own;
-  const Eigen::MatrixXd covariance =
-      parameterCovariance(best.model, rows, whiteningBy(best.model), plan, solved);
-  const auto readings = static_cast<double>(trial.measured.array().isFinite().count());
-  ModelSoil found{.soil = best.model.soil,
-                  .strength_covariance = strengthCovariance(plan, covariance, best.model.soil),
-                  .misfit = best.chi2 / std::max(1.0, readings - static_cast<double>(plan.free.size()))};
-  best.model.fitted = plan.free;
-  for (const std::string& name : soilAtBounds(best.model))
-    found.unseen.push_back(name + ": ended at the limit of its range");
-  for (std::size_t k = 0; k < plan.free.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    const double prior = plan.soil_prior.at(plan.free[k].index).std;
-    if (std::sqrt(std::max(0.0, covariance(at, at))) > kUndeterminedShare * prior)
-      found.unseen.push_back(
-          std::string(soilParameters()[static_cast<std::size_t>(plan.free[k].index)].name) +
-          ": the posterior is almost as wide as the prior");
+  const TrialFit fit{start, trial, false, go_on, false};
+  std::vector<RefinedModel> starts;
+  for (const SoilPrior& soil : options.prior) {
+    starts.push_back(fit.model());
+    setSoil(starts.back(), soil);
+    hold(starts.back());
   }
+  if (starts.empty()) starts.push_back(fit.model());
+  std::vector<SoilNormal> priors, parts;
+  for (const RefinedModel& at : starts) {
+    priors.push_back(priorOf(at, width_m));
+    priors.back().weight = 1.0 / static_cast<double>(starts.size());
+    parts.push_back(fitted(fit, at, width_m));
+  }
+  normaliseWeights(parts);
+  const SoilNormal posterior = mixtureOf(parts, width_m);
+  ModelSoil found{.model = fit.model()};
+  found.model.soil = posterior.soil;
+  for (const SoilNormal& part : parts) found.probability.push_back(part.weight);
+  found.model.fitted.clear();
+  found.model.covariance.clear();
+  for (int k = 0; k < posterior.mean.size(); ++k)
+    if (posterior.covariance(k, k) > 0.0) found.model.fitted.push_back({.effect = -1, .index = k});
+  for (const FittedParameter& a : found.model.fitted)
+    for (const FittedParameter& b : found.model.fitted)
+      found.model.covariance.push_back(posterior.covariance(a.index, b.index));
+  compareWithStated(trial, options.noise, found);
+  listUnseen(mixtureOf(priors, width_m), posterior, found);
+  watch.report(1.0);
   return found;
 }
 

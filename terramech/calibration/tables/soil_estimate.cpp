@@ -91,9 +91,7 @@ const std::vector<std::string>& modulusMethods() {
 
 SoilEstimate estimateSoil(const EstimateOptions& options, const ProgressMonitor& watch) {
   validate(options);
-  const bool whole_model = options.method == "wong-reece" && measuresSideForce(options.table);
-  if (!options.model.empty() || whole_model) return modelEstimate(options, watch);
-  if (options.method == "wong-reece") return posteriorEstimate(options, watch);
+  if (options.method == "wong-reece" || !options.model.empty()) return modelEstimate(options, watch);
   if (options.method != "bevameter") return lineEstimate(options, watch);
   if (options.recursive) {
     throw InputError({.where = "--recursive",

@@ -176,25 +176,6 @@ void findRivals(const Path& path, InPlace& in_place, TraceResult& result,
   if (result.effects.empty()) result.rivals = rivalsOf(path.search, result.rejected, {});
 }
 
-/// Prior information on a rover's own drive. The pull follows from the slope and has the error of an
-/// inclinometer, 0.3 degrees unless stated (ours). Wheels behind another wheel drive in a rut (rut.hpp),
-/// whose stiffness is fitted.
-RefinedModel asDriven(RefinedModel model, const Trial& trial) {
-  constexpr double kSlopeError_rad = 0.005;
-  if (trial.moment.empty()) return model;
-  double load_N = 0.0;
-  for (const double w : trial.load_N) load_N += w / trial.rows();
-  if (!model.stated.drawbar_pull_N) model.stated.drawbar_pull_N = kSlopeError_rad * load_N;
-  const auto& columns = trial.covariates;
-  const bool has_passes = std::find(columns.begin(), columns.end(), "pass_index") != columns.end();
-  if (!has_passes || knowsPasses(model.effects)) return model;
-  model.effects.push_back({.name = "multipass_reload",
-                           .covariate = "pass_index",
-                           .channel = Channel::Sinkage,
-                           .parameters = {model.soil.rut_stiffness - 1.0, 1.0}});
-  return model;
-}
-
 }  // namespace
 
 bool accepted(const std::vector<Explanation>& ranked, double threshold) {

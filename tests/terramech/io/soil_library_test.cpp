@@ -293,21 +293,6 @@ TEST(SoilPriors, PriorsComeFromANameAFileOrAreEmpty) {
   EXPECT_THROW(soilPriors("no_such_soil"), InputError);
 }
 
-TEST(SoilPriors, MixtureModulusAccountsForWheelWidth) {
-  const test::TemporaryFile file{kTwoSoils, ".yaml"};
-  const SoilMixture mixture = mixtureOf(soilPriors(file.path()), 0.1);
-  ASSERT_EQ(mixture.size(), 2U);
-  EXPECT_EQ(mixture[0].probability, 0.5);
-  EXPECT_EQ(mixture[1].probability, 0.5);
-  // Closed form: k = k_c/b + k_phi with std hypot(30/0.1, 400) = 500; y is in standard deviations.
-  EXPECT_NEAR(mixture[0].parameters[3].at(0.0), 205000.0, 1e-6);
-  EXPECT_NEAR(mixture[0].parameters[3].slope(0.0), 500.0, 1e-6);
-  EXPECT_NEAR(mixture[0].parameters[0].at(2.0), 1200.0, 1e-9);
-  // Property: a parameter without a standard deviation is fixed, and cohesion is never negative.
-  EXPECT_EQ(mixture[0].parameters[1].at(0.3), 0.5);
-  EXPECT_EQ(mixture[0].parameters[0].at(-20.0), 0.0);
-}
-
 TEST(SoilPriors, StrengthPriorsAndMeanShearModulusMatchTheSoils) {
   const test::TemporaryFile file{kTwoSoils, ".yaml"};
   const auto soils = soilPriors(file.path());

@@ -31,7 +31,7 @@ TEST(WheelRows, ReadsSamplesWithWheelLineAndText) {
   EXPECT_THAT(rows.lines, ElementsAre(2, 4));
   EXPECT_FALSE(rows.one_wheel);
   EXPECT_EQ(rows.wheel.radius_m, 0.1);
-  EXPECT_EQ(rows.readings()[1].wheel.radius_m, 0.15);
+  EXPECT_EQ(rows.wheels[1].radius_m, 0.15);
   ASSERT_FALSE(rows.rejected.empty());
   EXPECT_EQ(rows.rejected.front().line, 3U);
   EXPECT_THAT(rows.rejected.front().reason, HasSubstr("sinkage_m = 0"));

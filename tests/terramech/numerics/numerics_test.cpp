@@ -65,14 +65,6 @@ TEST(NormalDistribution, QuantileAt975PerMilleMatchesReferenceAndZeroIsRejected)
   EXPECT_THROW((void)normalQuantile(0.0), std::invalid_argument);
 }
 
-TEST(EvenPoints, FillTheUnitCubeUniformly) {
-  // Property: the mean of each coordinate of a Halton sequence is 1/2 to about log(n)/n.
-  const auto points = evenPoints(5, 1024);
-  for (int row = 0; row < 5; ++row) EXPECT_NEAR(points.row(row).mean(), 0.5, 0.01);
-  EXPECT_GT(points.minCoeff(), 0.0);
-  EXPECT_LT(points.maxCoeff(), 1.0);
-}
-
 template <std::size_t N>
 double integralOfPower(int power) {
   constexpr auto rule = gaussLegendre<N>();
