@@ -4,6 +4,7 @@
 #include <ctime>
 #include <map>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 #include <thesis_runs.hpp>
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
@@ -453,8 +454,14 @@ void compareWithStated(const Trial& trial, double noise, ModelSoil& found) {
   const double relative = noise > 0.0 ? noise : kTypicalError;
   SensorNoise errors;
   const std::array given{stated.drawbar_pull_N, stated.sinkage_m, stated.torque_Nm, stated.side_force_N};
-  for (std::size_t c = 0; c < kChannels; ++c)
-    (given[c] ? errors.absolute[c] : errors.relative[c]) = given[c].value_or(relative);
+  const double load_N =
+      std::reduce(trial.load_N.begin(), trial.load_N.end()) / std::max<double>(1.0, trial.rows());
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const bool force = c == static_cast<std::size_t>(Channel::DrawbarPull) ||
+                       c == static_cast<std::size_t>(Channel::SideForce);  // may be zero
+    (given[c] || force ? errors.absolute[c] : errors.relative[c]) =
+        given[c].value_or(force ? relative * load_N : relative);
+  }
   (stated.slip ? errors.slip_absolute : errors.slip_relative) = stated.slip.value_or(relative);
   errors.load_relative = relative;
   Trial rows = asMeasured(trial);

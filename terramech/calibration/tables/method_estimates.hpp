@@ -51,8 +51,8 @@ struct ModelSoil {
   /// Given model with the estimated soil, and with the covariance of its parameters, including priors.
   RefinedModel model;
   std::vector<double> probability;  ///< probability of each soil of the prior
-  /// Mean square of the residuals over the stated errors [-], 5 % of a reading unless stated; about 1 if model
-  /// and errors are correct. The fit uses errors that are estimated from the rows.
+  /// Mean square of the residuals over the stated errors [-], about 1 if model and errors are correct. Unless stated,
+  /// the errors are 5 % of a reading, or of the mean load for a pull or side force, which may be zero. The fit uses errors that are estimated from the rows.
   double misfit = 0.0;
   Channel worst = Channel::Torque;  ///< channel with the greatest part of the misfit
   /// Parameters whose uncertainty is that of the prior, or that are at a bound of their range.
