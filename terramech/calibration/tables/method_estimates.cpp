@@ -418,7 +418,7 @@ SoilNormal mixtureOf(const std::vector<SoilNormal>& parts, double width_m) {
 }
 
 // Fits the soil of `start` under its prior with the errors of `fit`; the weight is the logarithm of the evidence.
-SoilNormal fitted(const TrialFit& fit, RefinedModel start, double width_m) {
+SoilNormal fitted(const TrialFit& fit, const RefinedModel& start, double width_m) {
   const CalibratedRows& rows = fit.rows();
   FitPlan plan = fitPlan(start, false);
   std::erase_if(plan.free, [](const FittedParameter& p) { return p.effect >= 0; });
