@@ -10,7 +10,6 @@
 #include <talus/planner/field/grid_route.hpp>
 #include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/grid/point_route.hpp>
-#include <talus/planner/reach/cell_chain.hpp>
 #include <talus/planner/reach/lifted_ground.hpp>
 #include <talus/planner/refine/vertices.hpp>
 #include <talus/planner/route/problem.hpp>
@@ -117,7 +116,6 @@ Plan FieldPlanner::misplaced(const Problem& problem, const Stage& stage, bool fr
 // no route exists, or neither.
 Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, const StopCheck& stop) {
   if (stop()) return cancelledPlan(stop);
-  const MotionCost cost(problem.map);
   const Segment places{stage.from, stage.to};
   HeadingSets& headings = headingsOf(problem);
   // A start or goal in a small pocket is proven to be one before any search on the whole map.
@@ -127,51 +125,32 @@ Plan FieldPlanner::beyondTheGrid(const Problem& problem, const Stage& stage, con
   Reach back(*problem.map, headings, Reach::Sense::To, stage.to, stage.tolerance_m, stop, nullptr, pocket);
   const bool closed = (reach->complete() && !reach->reaches(stage.to, stage.tolerance_m)) ||
                       (back.complete() && !back.reaches(stage.from, 0.0));
-  if (!closed && bound_.prepare(problem.map, stage.to, stage.tolerance_m, stop)) {
-    Plan found = failedPlan(RouteStatus::Found, {});
-    found.points = overPoints(problem, stage, kInfinity, stop);
-    if (!found.points.empty()) return found;
-  }
+  Plan found = failedPlan(RouteStatus::Found, {});
+  const auto search = [&](bool more) {
+    bound_.prepare(problem.map, stage.to, stage.tolerance_m, stop);
+    found.points = overPoints(problem, stage, kInfinity, stop, more);
+    return !found.points.empty();
+  };
+  if (!closed && search(false)) return found;
   if (!reach->complete()) reach.emplace(*problem.map, headings, Reach::Sense::From, stage.from, 0.0, stop);
   if (!reach->complete()) return cancelledPlan(stop);
-  if (!reach->reaches(stage.to, stage.tolerance_m)) {
+  if (!reach->reaches(stage.to, stage.tolerance_m) ||
+      !Reach(*problem.map, headings, Reach::Sense::To, stage.to, stage.tolerance_m, stop)
+           .reaches(stage.from, 0.0)) {
+    if (stop()) return cancelledPlan(stop);
     const Obstruction why =
         obstructionBetween(*problem.map, headings, *reach, places, stage.tolerance_m, problem.hazards, stop);
     Plan none = failedPlan(RouteStatus::NoRoute, text(why, places));
     none.obstruction = why;
     return none;
   }
-  const Reach to_goal(*problem.map, headings, Reach::Sense::To, stage.to, stage.tolerance_m, stop);
-  if (!to_goal.complete()) return cancelledPlan(stop);
-  const CellRouteLimits limits{.may_enter = [&to_goal](maps::Cell cell) { return to_goal.holds(cell); }};
-  CellRoute found = cellRoute(cost, headings, places, stage.tolerance_m, limits, stop);
-  Plan plan = failedPlan(found.points.empty() ? RouteStatus::NoneFound : RouteStatus::Found, {});
-  plan.points = std::move(found.points);
-  if (plan.status == RouteStatus::Found) return plan;
+  // Nothing separates the places: more points of the cells may find the route.
+  if (search(true)) return found;
   if (stop()) return cancelledPlan(stop);
-  if (found.out_of_reach) {
-    plan.status = RouteStatus::NoRoute;
-    plan.obstruction = {.cells_from_start = found.cells,
-                        .cells_to_goal = to_goal.cells(),
-                        .last = found.last,
-                        .first = stage.to};
-    // Reach joins both sets by cell adjacency alone; tryLifting() tests for a route over points of cells.
-    const auto opens = [&](const costmap::CostGrid& lifted) {
-      const MotionCost free(std::shared_ptr<const costmap::CostGrid>(std::shared_ptr<const void>(), &lifted));
-      return !pointRoute(free, places, stage.tolerance_m, kInfinity, stop).empty();
-    };
-    tryLifting(*plan.obstruction, *problem.map, problem.hazards, opens, stop);
-    plan.reason = text(*plan.obstruction, places);
-    return plan;
-  }
-  plan.reason =
-      found.all_ways
-          ? "no route found, nor a proof that there is none: the ways left allow only single headings; "
-            "increase the goal tolerance, or choose another goal"
-          : "no route found within the allowed work (" + std::to_string(found.ways) +
-                " ways into cells followed), nor a proof that there is none; add a via point, or "
-                "choose another goal";
-  return plan;
+  return failedPlan(
+      RouteStatus::NoneFound,
+      "no route found, nor a proof that there is none: the ways left allow only single headings; "
+      "increase the goal tolerance, add a via point, or choose another goal");
 }
 
 Polyline FieldPlanner::refined(const Problem& problem, const Stage& stage, Polyline rough,
@@ -210,9 +189,10 @@ void FieldPlanner::tryOverPoints(const Problem& problem, const Stage& stage, con
 }
 
 Polyline FieldPlanner::overPoints(const Problem& problem, const Stage& stage, double most_J,
-                                  const StopCheck& stop) const {
-  return pointRoute(MotionCost(problem.map), {stage.from, stage.to}, stage.tolerance_m, most_J, stop,
-                    [this](maps::Point at) { return bound_.toGoal_J(at); });
+                                  const StopCheck& stop, bool more) const {
+  return pointRoute(
+      MotionCost(problem.map), {stage.from, stage.to}, stage.tolerance_m, most_J, stop,
+      [this](maps::Point at) { return bound_.toGoal_J(at); }, more);
 }
 
 Plan FieldPlanner::finished(const Problem& problem, const Stage& stage, Polyline rough,

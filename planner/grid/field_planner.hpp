@@ -52,7 +52,8 @@ class FieldPlanner {
   Plan finished(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   Polyline refined(const Problem& problem, const Stage& stage, Polyline rough, const StopCheck& stop);
   void tryOverPoints(const Problem& problem, const Stage& stage, const StopCheck& stop, Plan& plan);
-  Polyline overPoints(const Problem& problem, const Stage& stage, double most_J, const StopCheck& stop) const;
+  Polyline overPoints(const Problem& problem, const Stage& stage, double most_J, const StopCheck& stop,
+                      bool more = false) const;
 
   static constexpr double kProven = 1e-3;  // smallest relative gap for which points of cells are searched
   // Cost limit of the search over points of cells, as a multiple of the cost of the best route. It exceeds 1

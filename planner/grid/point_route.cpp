@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <talus/planner/bound/lower_bound.hpp>
@@ -8,13 +9,18 @@
 namespace talus::planner {
 namespace {
 
-constexpr PointCounts kFinest{15, 5}, kFine{7, 3}, kCoarse{3, 1};
-constexpr std::size_t kTinyCells = 1'000, kFinestCells = 5'000, kFineCells = 20'000;
+// Numbers of points, and the most cells of a map that is searched over them: at once, and if fewer found no route.
+struct Level {
+  PointCounts counts;
+  std::size_t at_once, most;
+};
+constexpr std::array<Level, 3> kLevels{
+    {{{3, 1}, ~std::size_t{0}, ~std::size_t{0}}, {{7, 3}, 20'000, 1'000'000}, {{15, 5}, 1'000, 100'000}}};
 
 }  // namespace
 
 Polyline pointRoute(const MotionCost& cost, const Segment& places, double tolerance_m, double most_J,
-                    const StopCheck& stop, const Rest& rest) {
+                    const StopCheck& stop, const Rest& rest, bool more) {
   const maps::Grid& grid = cost.map().grid();
   const double metre_J = rest ? 0.0 : 0.999 * cheapestMetre_J(cost.map());
   const Rest straight = [&](maps::Point at) {
@@ -26,9 +32,13 @@ Polyline pointRoute(const MotionCost& cost, const Segment& places, double tolera
     return std::isfinite(cost.along(way)) ? way : Polyline{};
   };
   const std::size_t cells = grid.size();
-  if (cells > kFineCells) return found(kCoarse);
-  Polyline way = found(cells > kTinyCells ? kFine : kFinest);
-  return way.empty() && cells > kTinyCells && cells <= kFinestCells ? found(kFinest) : way;
+  std::size_t level = kLevels.size() - 1;
+  while (cells > kLevels[level].at_once) --level;
+  if (!more) return found(kLevels[level].counts);
+  Polyline way;
+  while (way.empty() && ++level < kLevels.size() && cells <= kLevels[level].most)
+    way = found(kLevels[level].counts);
+  return way;
 }
 
 }  // namespace talus::planner

@@ -504,36 +504,11 @@ const char* what(Constraint constraint, bool stated) noexcept {
   return kWhat[static_cast<std::size_t>(constraint)];
 }
 
-}  // namespace
+// Function that returns true if `map` connects start and goal.
+using OpensOn = std::function<bool(const costmap::CostGrid& map)>;
 
-Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, const Reach& from_start,
-                               const Segment& places, double tolerance_m, const HazardsOf& hazards,
-                               const StopCheck& stop) {
-  Obstruction found{.last = places.from, .first = places.to};
-  found.cells_from_start = from_start.cells();
-  const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
-  found.cells_to_goal = to_goal.cells();
-  const bool backwards = to_goal.cells() < from_start.cells();
-  auto gap = backwards ? closest(map.grid(), to_goal, from_start, stop)
-                       : closest(map.grid(), from_start, to_goal, stop);
-  if (gap) {
-    if (backwards) std::swap(gap->first, gap->second);
-    found.last = map.grid().centre(gap->first);
-    found.first = map.grid().centre(gap->second);
-  }
-  // Searches from the side with fewer cells, until the search meets the other side.
-  const auto opens = [&](const costmap::CostGrid& lifted) {
-    HeadingSets free(lifted.cost());
-    Reach reach = backwards ? Reach(lifted, free, Reach::Sense::To, places.to, tolerance_m, stop, &from_start)
-                            : Reach(lifted, free, Reach::Sense::From, places.from, 0.0, stop, &to_goal);
-    if (reach.joined()) return true;
-    return reach.complete() &&
-           (backwards ? reach.reaches(places.from, 0.0) : reach.reaches(places.to, tolerance_m));
-  };
-  tryLifting(found, map, hazards, opens, stop);
-  return found;
-}
-
+// Tests which constraint causes the obstruction `found`, and stores it in `found`. The two sets of cells of
+// `found` must be known. After a stop, or on maps with more than kTriedCells cells, no constraint is tested.
 void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsOf& hazards,
                 const OpensOn& opens, const StopCheck& stop) {
   found.stated = map.cost().limits().stated;
@@ -571,6 +546,39 @@ void tryLifting(Obstruction& found, const costmap::CostGrid& map, const HazardsO
       findKind();
     }
   found.tried = !stop();
+}
+
+}  // namespace
+
+Obstruction obstructionBetween(const costmap::CostGrid& map, HeadingSets& headings, Reach& from_start,
+                               const Segment& places, double tolerance_m, const HazardsOf& hazards,
+                               const StopCheck& stop) {
+  Obstruction found{.last = places.from, .first = places.to};
+  found.cells_from_start = from_start.cells();
+  const Reach to_goal(map, headings, Reach::Sense::To, places.to, tolerance_m, stop);
+  found.cells_to_goal = to_goal.cells();
+  // Each reach may be too wide, so that one alone decides.
+  const bool apart = !from_start.reaches(places.to, tolerance_m);
+  const bool backwards = !apart || to_goal.cells() < from_start.cells();
+  auto gap = backwards ? closest(map.grid(), to_goal, from_start, stop)
+                       : closest(map.grid(), from_start, to_goal, stop);
+  if (gap) {
+    if (backwards) std::swap(gap->first, gap->second);
+    found.last = map.grid().centre(gap->first);
+    found.first = map.grid().centre(gap->second);
+  }
+  // Searches from the side with fewer cells, until the search meets the other side.
+  const auto opens = [&](const costmap::CostGrid& lifted) {
+    HeadingSets free(lifted.cost());
+    Reach reach = backwards ? Reach(lifted, free, Reach::Sense::To, places.to, tolerance_m, stop,
+                                    apart ? &from_start : nullptr)
+                            : Reach(lifted, free, Reach::Sense::From, places.from, 0.0, stop, &to_goal);
+    if (reach.joined()) return true;
+    return reach.complete() &&
+           (backwards ? reach.reaches(places.from, 0.0) : reach.reaches(places.to, tolerance_m));
+  };
+  tryLifting(found, map, hazards, opens, stop);
+  return found;
 }
 
 std::string text(const Obstruction& obstruction, const Segment& places) {

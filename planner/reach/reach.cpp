@@ -85,8 +85,7 @@ bool Reach::mayCross(Cell cell, const HeadingSet& own, int side) {
   if (own.all() && other.all()) return true;
   const HeadingSet both = own.shared(other);
   if (both.empty()) return false;
-  const double off =
-      std::remainder(both.nearest(outwards_rad(side), 0.0) - outwards_rad(side), HeadingSet::kTurn);
+  const double off = std::remainder(both.nearest(outwards_rad(side)) - outwards_rad(side), HeadingSet::kTurn);
   return std::abs(off) <= 0.25 * HeadingSet::kTurn + kEnds;
 }
 

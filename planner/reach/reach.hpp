@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <talus/costmap/cost/cost_model.hpp>
-#include <talus/planner/reach/cell_chain.hpp>
+#include <talus/planner/reach/side_range.hpp>
 #include <talus/planner/route/polyline.hpp>
 #include <talus/planner/route/stop_check.hpp>
 

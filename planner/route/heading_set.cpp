@@ -133,14 +133,13 @@ HeadingSet HeadingSet::shared(const HeadingSet& other) const {
   return HeadingSet(std::move(both));
 }
 
-double HeadingSet::nearest(double heading_rad, double inside_rad) const noexcept {
+double HeadingSet::nearest(double heading_rad) const noexcept {
   double best = heading_rad, best_off = 2.0 * kTurn;
   for (const HeadingArc& arc : arcs_) {
-    const double inside = std::min(inside_rad, 0.5 * arc.width_rad);
     const double ahead = wrapped(heading_rad - arc.from_rad);
     // Inside the arc, or its end that is nearer on the circle.
-    double at = std::clamp(ahead, inside, arc.width_rad - inside);
-    if (ahead > arc.width_rad && kTurn - ahead < ahead - arc.width_rad) at = inside;
+    double at = std::min(ahead, arc.width_rad);
+    if (ahead > arc.width_rad && kTurn - ahead < ahead - arc.width_rad) at = 0.0;
     const double off = std::abs(std::remainder(arc.from_rad + at - heading_rad, kTurn));
     if (off < best_off) {
       best_off = off;

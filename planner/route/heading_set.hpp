@@ -101,10 +101,8 @@ class HeadingSet {
   /// Returns the intersection of this set and `other`.
   HeadingSet shared(const HeadingSet& other) const;
 
-  /// Returns the heading of the set that is nearest to `heading_rad` and at least `inside_rad` inside the
-  /// ends of its arc. In an arc narrower than 2 inside_rad, the middle of the arc is used. The set must not
-  /// be empty.
-  double nearest(double heading_rad, double inside_rad) const noexcept;
+  /// Returns the heading of the set that is nearest to `heading_rad`. The set must not be empty.
+  double nearest(double heading_rad) const noexcept;
 
   /// Returns the set of the opposite headings.
   HeadingSet reversed() const;

@@ -119,7 +119,7 @@ Site site(const std::vector<std::string>& rows, double gradient = 0.0, double pi
 
 Obstruction between(const Site& ground, const Segment& places = {{1.5, 2.5}, {7.5, 2.5}}) {
   HeadingSets headings(ground.map->cost());
-  const Reach reach(*ground.map, headings, Reach::Sense::From, places.from);
+  Reach reach(*ground.map, headings, Reach::Sense::From, places.from);
   return obstructionBetween(*ground.map, headings, reach, places, 0.0, ground.hazards);
 }
 
@@ -226,7 +226,7 @@ using testing::drawn;
 
 Obstruction between(const std::shared_ptr<const costmap::CostGrid>& map, const Segment& places) {
   HeadingSets headings(map->cost());
-  const Reach reach(*map, headings, Reach::Sense::From, places.from);
+  Reach reach(*map, headings, Reach::Sense::From, places.from);
   return obstructionBetween(*map, headings, reach, places, 0.0);
 }
 
@@ -250,7 +250,7 @@ TEST(ObstructionSearch, StopEndsTheSearch) {
   const auto map = drawn({"..#..", "..#..", "..#.."});
   const Segment places{{0.5, 0.5}, {3.5, 1.5}};
   HeadingSets headings(map->cost());
-  const Reach reach(*map, headings, Reach::Sense::From, places.from);
+  Reach reach(*map, headings, Reach::Sense::From, places.from);
   std::stop_source source;
   source.request_stop();
   const Obstruction found = obstructionBetween(*map, headings, reach, places, 0.0, {},

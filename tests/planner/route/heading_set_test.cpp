@@ -28,8 +28,7 @@ TEST(HeadingCost, CostIsBitIdenticalToDriveCost) {
 }
 
 bool holds(const HeadingSet& set, double heading) {
-  return !set.empty() &&
-         std::abs(std::remainder(set.nearest(heading, 0.0) - heading, HeadingSet::kTurn)) < 1e-12;
+  return !set.empty() && std::abs(std::remainder(set.nearest(heading) - heading, HeadingSet::kTurn)) < 1e-12;
 }
 
 TEST(HeadingSet, TouchingArcsAreMerged) {
