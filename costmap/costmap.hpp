@@ -242,6 +242,7 @@ class TraversabilityMap {
   TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model, const Options& options,
                     const ProgressMonitor& watch = {});
   TraversabilityMap(TraversabilityMap&&) noexcept;
+  TraversabilityMap& operator=(TraversabilityMap&&) noexcept;
   ~TraversabilityMap();
 
   /// Returns the surface: elevation, terrain classes, layers and hazards.
@@ -478,6 +479,8 @@ class DriveIntake {
   /// parts in the map and the journal. The result is bit-identical to that of addDrive() for the same rows,
   /// and takes as long. Throws std::logic_error unless IntakeOptions::settles is true.
   void settle();
+  /// Moves the window of the map (TraversabilityMap::moved()); the drive goes on.
+  void move(maps::Cell tiles);
   /// Returns the counts and findings of all parts so far.
   DriveReport report() const;
 

@@ -120,8 +120,8 @@ class Map {
 
   /// Replaces the ground of a window by a new observation (costmap::TraversabilityMap::patch()).
   void patch(const costmap::SurfacePatch& seen);
-  /// Returns the map of a window moved by whole tiles of 64 cells; parts of a drive cannot be settled across a move.
-  Map moved(maps::Cell tiles) const;
+  /// Moves the window by whole tiles of 64 cells (costmap::TraversabilityMap::moved()); the drive under way goes on.
+  void move(maps::Cell tiles);
 
   /// Returns category and causes at a place for driving in one heading [rad]; without, in the worst heading. Throws
   /// std::invalid_argument if the place lies outside the map.

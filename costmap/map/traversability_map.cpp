@@ -566,6 +566,7 @@ SavedBlock MapShift::block(SavedBlock saved) const {
 }
 
 TraversabilityMap::TraversabilityMap(TraversabilityMap&&) noexcept = default;
+TraversabilityMap& TraversabilityMap::operator=(TraversabilityMap&&) noexcept = default;
 TraversabilityMap::~TraversabilityMap() = default;
 
 TraversabilityMap::TraversabilityMap(MapLayers layers, std::shared_ptr<const GroundModel> model,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <talus/costmap/costmap.hpp>
+#include <talus/costmap/evidence/evidence_store.hpp>
 #include <talus/costmap/evidence/observation_fault.hpp>
 #include <talus/costmap/telemetry/telemetry_processor.hpp>
 #include <talus/costmap/telemetry/telemetry_rows.hpp>
@@ -262,6 +263,18 @@ void DriveIntake::add(const terramech::Telemetry& telemetry) {
 
 void DriveIntake::settle() {
   state_->settle();
+}
+
+void DriveIntake::move(maps::Cell tiles) {
+  TraversabilityMap& map = state_->map;
+  const MapShift shift(map.grid(), tiles, map.evidence().blockCells());
+  map = map.moved(tiles);
+  const BlockGrid& blocks = map.evidence().store().blocks;
+  for (SavedBlock& saved : state_->counted) saved = shift.block(std::move(saved));
+  std::erase_if(state_->counted, [&](const SavedBlock& saved) {
+    const auto [column, row] = std::pair{saved.block.column, saved.block.row};
+    return column < 0 || row < 0 || column >= blocks.columns() || row >= blocks.rows();
+  });
 }
 
 DriveReport DriveIntake::report() const {

@@ -65,8 +65,8 @@ void Map::patch(const costmap::SurfacePatch& seen) {
   map_->patch(seen);
 }
 
-Map Map::moved(maps::Cell tiles) const {
-  return Map(map_->moved(tiles));
+void Map::move(maps::Cell tiles) {
+  intake_->move(tiles);
 }
 
 costmap::Explanation Map::explain(maps::Point place, std::optional<double> heading_rad) const {

@@ -575,12 +575,12 @@ without it x and y are local metres. thresholds: as in a mission file.)",
           R"(Wheel telemetry: the path of a CSV, or a dict of its columns as arrays, whole moments in order of time,
 NaN where not measured. Returns how many rows taught something.)")
       .def(
-          "moved",
+          "move",
           [](const PythonMap& m, int east, int north) {
-            return PythonMap(alone(m, [&](const Map& own) { return own.moved({east, north}); }), m.files);
+            alone(m, [&](Map& own) { own.move({east, north}); });
           },
           "east"_a, "north"_a,
-          "The map of the window that lies so many tiles of 64 cells further east and north.")
+          "Moves the window by so many tiles of 64 cells further east and north; the drive under way goes on.")
       .def("__repr__", [](const PythonMap& m) {
         const maps::Grid& g = m.map().grid();
         return "<talus.Map " + std::to_string(g.height) + " x " + std::to_string(g.width) + " cells of " +

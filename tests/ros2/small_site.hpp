@@ -66,10 +66,8 @@ class RosTest : public testing::Test {
   }
   static std::vector<std::string>& log() { return rclcpp::Node::newest->log; }
 
-  const std::string file_ = (std::filesystem::temp_directory_path() /
-                             ("talus-ros-" + std::to_string(::getpid()) +
-                              testing::UnitTest::GetInstance()->current_test_info()->name()))
-                                .string();
+  const std::string file_ =
+      (std::filesystem::temp_directory_path() / ("talus-ros-" + std::to_string(::getpid()))).string();
 };
 
 }  // namespace talus_ros2

@@ -405,6 +405,21 @@ TEST(DriveParts, SettledPartsYieldTheResultOfTheWhole) {
   for (const char* const file : {"", "-wal", "-shm"}) std::filesystem::remove(path + file);
 }
 
+// Property: a drive across a move of the window yields, after settle(), the map of the whole drive on the moved window.
+TEST(DriveParts, DriveGoesOnAcrossAMove) {
+  TraversabilityMap parts = sand(), whole = sand().moved({1, 0});
+  const Drive drive = driveOver(parts, soilOf(3), 3, {8.5, 23.5, 38.5});
+  const std::size_t half = drive.rows.size() / (2 * kWheels) * kWheels;
+  DriveIntake intake(parts, nullptr, {.settles = true});
+  intake.add(tableOf(partOf(drive, 0, half), true));
+  intake.move({1, 0});
+  intake.add(tableOf(partOf(drive, half, drive.rows.size()), true));
+  intake.settle();
+  parts.publishAll();
+  EXPECT_GT(addDrive(whole, tableOf(drive, true)).used, 0U);
+  EXPECT_TRUE(bytesOf(parts) == bytesOf(whole));
+}
+
 // Property: the order of rows in a file changes no cell, nor does a file without times in the order of time.
 TEST(DriveParts, RowsInAnyOrderTeachTheSame) {
   TraversabilityMap before = sand(), sorted = sand(), shuffled = sand(), untimed = sand();

@@ -214,10 +214,11 @@ class MapTest(Refusals):
     def test_a_moved_map_keeps_what_it_knows(self):
         ground = level(rows=130, columns=200)
         ground.learn(wheels(50.25, 30.25))
-        moved = ground.moved(1, 0)
-        self.assertEqual(moved.south_west, (32.0, 0.0))
-        np.testing.assert_array_equal(moved.beliefs()["evidence"][:, :136], ground.beliefs()["evidence"][:, 64:])
-        self.assertTrue(np.isnan(moved.heights[:, 136:]).all())
+        before = ground.beliefs()["evidence"]
+        ground.move(1, 0)
+        self.assertEqual(ground.south_west, (32.0, 0.0))
+        np.testing.assert_array_equal(ground.beliefs()["evidence"][:, :136], before[:, 64:])
+        self.assertTrue(np.isnan(ground.heights[:, 136:]).all())
 
     def test_a_point_cloud_becomes_a_patch(self):
         points = np.array([[5.1, 5.1, 0.1], [5.2, 5.2, 0.3], [5.6, 5.1, 0.2], [99.0, 5.0, 7.0], [5.6, 5.6, np.nan]])
@@ -304,7 +305,7 @@ class MapTest(Refusals):
             (KeyError, "no layer", lambda: ground.layer("own")),
             (ValueError, "shape (3,)", lambda: ground.dangers(np.zeros(3))),
             (ValueError, "is not finite", lambda: ground.dangers(np.full((2, 2), math.nan))),
-            (ValueError, "leaves nothing", lambda: ground.moved(5, 0)),
+            (ValueError, "leaves nothing", lambda: ground.move(5, 0)),
             (ValueError, "path: shape (3,)", lambda: ground.score(np.zeros(3))),
             (ValueError, "the path has no point", lambda: ground.score(np.zeros((0, 2)))),
             (talus.InputError, "the map spans x 0 to 30 m", lambda: ground.explain((99.0, 5.0))),
