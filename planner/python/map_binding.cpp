@@ -580,7 +580,8 @@ NaN where not measured. Returns how many rows taught something.)")
             alone(m, [&](Map& own) { own.move({east, north}); });
           },
           "east"_a, "north"_a,
-          "Moves the window by so many tiles of 64 cells further east and north; the drive under way goes on.")
+          "Moves the window by so many tiles of 64 cells further east and north; the drive under way goes "
+          "on.")
       .def("__repr__", [](const PythonMap& m) {
         const maps::Grid& g = m.map().grid();
         return "<talus.Map " + std::to_string(g.height) + " x " + std::to_string(g.width) + " cells of " +
