@@ -13,7 +13,8 @@ function domainOf({low, high, log}, series, place) {
     }
   if (!(least <= most)) [least, most] = log ? [0.1, 1] : [0, 1];
   const margin = most > least ? 0.04 * (most - least) : Math.max(0.5, 0.05 * Math.abs(least));
-  const [below, above] = log ? [least / 1.2, most * 1.2] : [least - margin, most + margin];
+  const spread = Math.max(1.2, Math.sqrt(10 * least / most));  // at least a decade, which has a tick
+  const [below, above] = log ? [least / spread, most * spread] : [least - margin, most + margin];
   return [low ?? below, high ?? above];
 }
 

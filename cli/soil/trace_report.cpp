@@ -681,7 +681,7 @@ std::string beyondAxleText(const TableTrace& trace) {
 namespace {
 
 /// Residuals without one effect, and the contribution of that effect, row by row over its column (over the
-/// row index if the effect acts on a constant or text).
+/// row index if no two rows differ in it, as for the effect of a group).
 Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at,
                 const Eigen::MatrixXd& level, const Eigen::VectorXd& sinkage) {
   RefinedModel without = r.refined;
@@ -690,7 +690,7 @@ Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at
   const Eigen::MatrixXd rest = predictRows(without, r.trial, solved);
   const std::string column = effect.chosen.candidate.covariate();
   const Eigen::VectorXd x = covariateValues(r.trial, column, sinkage);
-  const bool by_row = !x.array().isFinite().any();
+  const bool by_row = !(x.minCoeff<Eigen::PropagateNumbers>() < x.maxCoeff<Eigen::PropagateNumbers>());
   Series left{.name = "residual without it", .x = {}, .y = {}, .mark = Series::Mark::Points};
   Series added{.name = "what it adds", .x = {}, .y = {}, .mark = Series::Mark::Points};
   const auto c = static_cast<Eigen::Index>(effect.channel);
@@ -702,7 +702,10 @@ Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at
     added.x.push_back(at_x);
     added.y.push_back(level(row, c) - rest(row, c));
   }
-  return {.title = effect.chosen.candidate.parts.front().name + ": " + name(effect.channel),
+  const Effect& part = effect.chosen.candidate.parts.front();
+  const std::string group =
+      part.only_value.empty() ? "" : fmt::format(", {} {}", part.only_column, part.only_value);
+  return {.title = part.name + group + ": " + name(effect.channel),
           .x = {.label = by_row ? "row, as read" : column},
           .y = {.label = std::string(name(effect.channel)) + " [-]"},
           .series = {left, added}};

@@ -315,7 +315,7 @@ namespace {
 // Transverse Mercator on the body, true at the centre of the site; x and y are zero at the south-west corner.
 Georeference georeference(const SiteOptions& options) {
   const bool moon = options.kind == SiteKind::Craters;
-  return Georeference({.name = moon ? "generated site, Moon" : "generated site, Mars",
+  return Georeference({.name = "generated site",
                        .ellipsoid = moon ? kMoon : kMars,
                        .projection = {.method = ProjectionMethod::TransverseMercator,
                                       .latitude_of_origin_rad = (moon ? -9.0 : -4.6) * kDegree,

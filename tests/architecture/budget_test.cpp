@@ -14,8 +14,8 @@ struct Budget {
   long lines;
 };
 
-const Budget kBudgets[] = {{"common", 700},    {"terramech", 18190}, {"maps", 6710},     {"costmap", 11714},
-                           {"planner", 22441}, {"cli", 12672},       {"examples", 1541}, {"tests", 55434}};
+const Budget kBudgets[] = {{"common", 700},    {"terramech", 18190}, {"maps", 6710},     {"costmap", 11731},
+                           {"planner", 21571}, {"cli", 12672},       {"examples", 1541}, {"tests", 55434}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;
