@@ -34,14 +34,6 @@ std::shared_ptr<Session> Sessions::find(std::uint64_t number) const {
   return known == sessions_.end() ? nullptr : known->second;
 }
 
-bool Sessions::replace(std::uint64_t number, std::shared_ptr<Session> session) {
-  const std::lock_guard lock(mutex_);
-  const auto known = sessions_.find(number);
-  if (known == sessions_.end()) return false;
-  known->second.swap(session);
-  return true;
-}
-
 std::shared_ptr<Session> Sessions::remove(std::uint64_t number) {
   const std::lock_guard lock(mutex_);
   const auto known = sessions_.find(number);

@@ -40,8 +40,6 @@ class Sessions {
   std::uint64_t add(std::shared_ptr<Session> session);
   /// Returns the session with a number; null if the number was never used or its session was removed.
   std::shared_ptr<Session> find(std::uint64_t number) const;
-  /// Replaces the session of a number. Returns false, without a change, if the number is not in use.
-  bool replace(std::uint64_t number, std::shared_ptr<Session> session);
   /// Removes the session of a number and returns it; null if the number is not in use.
   std::shared_ptr<Session> remove(std::uint64_t number);
 

@@ -244,10 +244,8 @@ talus_code talus_patch(talus_session session, const talus_grid* grid, const talu
 talus_code talus_move(talus_session session, int east_tiles, int north_tiles, talus_error* error) {
   return guarded(error, [&] {
     const Held held(session);
-    auto moved =
-        std::make_shared<Session>(held->map.moved({east_tiles, north_tiles}), std::move(held->planner));
-    require(sessions().replace(session, std::move(moved)),
-            "session " + std::to_string(session) + " was destroyed meanwhile");
+    held->map.move({east_tiles, north_tiles});
+    held->route = {};
     return TALUS_OK;
   });
 }

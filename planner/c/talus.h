@@ -166,7 +166,7 @@ TALUS_API talus_code talus_save(talus_session session, const char* path, talus_e
 
 /* Moves the map with the rover by whole tiles of 64 cells east and north (negative: west, south). Cells in both windows
    keep their layers and estimates, new cells are unobserved, and cells outside the new window are discarded. The route is
-   discarded, and the plausibility check of the wheels' sensors starts again before readings can raise an estimate. */
+   discarded; the drive under way goes on. */
 TALUS_API talus_code talus_move(talus_session session, int east_tiles, int north_tiles, talus_error* error);
 
 /* Reads the grid of the map; the caller sets grid->size first. */
@@ -176,10 +176,10 @@ TALUS_API talus_code talus_read_grid(talus_session session, talus_grid* grid, ta
 TALUS_API talus_code talus_patch(talus_session session, const talus_grid* grid, const talus_layers* layers, talus_error* error);
 
 /* Adds wheel telemetry in order of time; a call must contain all rows of a time. `used` (may be NULL) returns the number of
-   rows used for estimates. A session stores its rows, about 400 bytes each, until it is moved or destroyed. */
+   rows used for estimates. A session stores its rows, about 400 bytes each, until it is destroyed. */
 TALUS_API talus_code talus_learn(talus_session session, const talus_wheel* rows, size_t count, size_t* used, talus_error* error);
 
-/* Re-evaluates all rows since the session began or was moved, with the sensor checks based on all rows. The map then equals
+/* Re-evaluates all rows since the session began, with the sensor checks based on all rows. The map then equals
    that of `talus update` with one file of these rows, if all rows are valid: for a number out of range this call omits the
    number, `talus update` the row. Takes as long as adding the rows; does nothing without rows. Recommended at each stop of
    the rover and before important plans. */
