@@ -151,10 +151,7 @@ void MapNode::follow(talus::maps::Point middle) {
                north = tiles(middle.y_m, grid.south_west.y_m, grid.height);
   if (east == 0.0 && north == 0.0) return;
   const bool overlaps = std::abs(east) * kTile < grid.width && std::abs(north) * kTile < grid.height;
-  if (overlaps)
-    map_->move({static_cast<int>(east), static_cast<int>(north)});
-  else
-    *map_ = unseen(middle);
+  overlaps ? map_->move({static_cast<int>(east), static_cast<int>(north)}) : void(*map_ = unseen(middle));
 }
 
 void MapNode::see(const grid_map_msgs::msg::GridMap& message) {

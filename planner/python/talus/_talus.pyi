@@ -288,8 +288,8 @@ class Map:
     def learn(self, telemetry: _Table) -> int:
         """Wheel telemetry: the path of a CSV, or a dict of its columns as arrays, whole moments in order of time,
         NaN where not measured. Returns how many rows taught something."""
-    def moved(self, east: int, north: int) -> Map:
-        """The map of the window that lies so many tiles of 64 cells further east and north."""
+    def move(self, east: int, north: int) -> None:
+        """Moves the window by so many tiles of 64 cells further east and north; the drive under way goes on."""
     def patch(
         self,
         heights: Optional[_Floats] = None,
