@@ -702,10 +702,7 @@ Plot effectPlot(const TraceResult& r, const TracedEffect& effect, std::size_t at
     added.x.push_back(at_x);
     added.y.push_back(level(row, c) - rest(row, c));
   }
-  const Effect& part = effect.chosen.candidate.parts.front();
-  const std::string group =
-      part.only_value.empty() ? "" : fmt::format(", {} {}", part.only_column, part.only_value);
-  return {.title = part.name + group + ": " + name(effect.channel),
+  return {.title = effect.chosen.candidate.parts.front().name + ": " + name(effect.channel),
           .x = {.label = by_row ? "row, as read" : column},
           .y = {.label = std::string(name(effect.channel)) + " [-]"},
           .series = {left, added}};
