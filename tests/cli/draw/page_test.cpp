@@ -309,7 +309,7 @@ TEST(Page, ReliefIsDrawn) {
   // The virtual time of the browser does not wait for its graphics process: on a busy machine it may end
   // before the first drawing.
   Shown shown;
-  for (int tries = 0; tries < 3 && shown.dom.find("data-probed") == std::string::npos; ++tries)
+  for (int tries = 0; tries < 6 && shown.dom.find("data-probed") == std::string::npos; ++tries)
     shown =
         show(played(exampleScene(), kOpenRelief),
              "--disable-gpu --enable-unsafe-swiftshader --disable-gpu-watchdog --virtual-time-budget=100000");
