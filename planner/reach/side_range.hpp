@@ -46,6 +46,7 @@ inline InCell inCell(const maps::Grid& grid, maps::Cell cell, maps::Point p) noe
   return {(p.x_m - grid.south_west.x_m) / grid.resolution_m - cell.column,
           (p.y_m - grid.south_west.y_m) / grid.resolution_m - cell.row};
 }
+
 /// Returns the point at the position `at`, 0 to 1, on a side.
 constexpr InCell onSide(int side, double at) noexcept {
   return side == Side::West    ? InCell{0.0, at}
@@ -60,10 +61,6 @@ struct SideRange {
   double to = -1.0;
 
   bool empty() const noexcept { return from > to; }
-  /// Returns true if this range contains `other`.
-  bool holds(const SideRange& other) const noexcept {
-    return other.empty() || (from <= other.from && other.to <= to);
-  }
   /// Returns the smallest range that contains both ranges.
   SideRange hull(const SideRange& other) const noexcept {
     return {std::min(from, other.from), std::max(to, other.to)};
