@@ -161,8 +161,7 @@ HeadingSets::Limits::Limits(const costmap::TravelCost& cost, const costmap::Trav
       gentle(gentleGradient(cost, curve)) {
   for (std::vector<double>* limits : {&along, &across}) {
     std::ranges::sort(*limits);
-    const auto twice = std::ranges::unique(*limits);
-    limits->erase(twice.begin(), twice.end());
+    limits->erase(std::unique(limits->begin(), limits->end()), limits->end());
   }
 }
 
