@@ -233,7 +233,7 @@ int run(int argc, const char* const* argv, AddCommand* add) {
     addGlobalOptions(app, context);
     app.footer(
         "Topics: talus help formats, soils, rovers, missions. Manual page: talus help man. `./dev install`\n"
-        "puts it in place, and the completion for bash.");
+        "puts it in place, and the completion for bash, zsh and fish.");
     add(app, context);
     refuseEmptyValues(app);
     code = parseAndRun(app, context, words(argc, argv));

@@ -1,4 +1,5 @@
 # Completion for bash: calls, options and the choices of an option are those that the program's help lists.
+# Run as a program with the words of a line, it prints the completions of the last one, for the other shells.
 _talus() {
   local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} word call= help calls choices
   help=$("${COMP_WORDS[0]}" help)
@@ -19,4 +20,10 @@ _talus() {
     COMPREPLY=($(compgen -f -- "$cur"))
   fi
 }
-complete -o filenames -F _talus talus
+if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
+  COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+  _talus
+  printf '%s\n' "${COMPREPLY[@]}"
+else
+  complete -o filenames -F _talus talus
+fi
