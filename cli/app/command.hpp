@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -16,12 +15,16 @@
 
 namespace talus::cli {
 
-template <typename Options, typename Run>
-CLI::App& registerCommand(CLI::App& app, Context& context, const char* name,
-                          void (*bind)(CLI::App&, Options&), Run run) {
+/// Registers the subcommand `name`. `bind` declares the options of the subcommand as fields of a plain struct.
+/// `run(options, context)` receives the parsed struct, which a mission may complete, and returns the exit code of the
+/// program. main() prints exceptions.
+template <typename Options, typename Parsed>
+CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*bind)(CLI::App&, Options&),
+                     int (*run)(Parsed, Context&)) {
   CLI::App& command = addSubcommand(app, name);
   auto options = std::make_shared<Options>();
   bind(command, *options);
+  describeOptions(command);
   command.callback([options, run, &command, &context] {
     checkNumbers(command);
     const InputRecord manifest;
@@ -29,20 +32,6 @@ CLI::App& registerCommand(CLI::App& app, Context& context, const char* name,
     context.exit_code = run(*options, context);
   });
   return command;
-}
-
-/// Registers the subcommand `name`. `bind` declares the options of the subcommand as fields of a plain struct.
-/// `run(options, context)` receives the parsed struct and returns the exit code of the program. main() prints exceptions.
-template <typename Options>
-CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*bind)(CLI::App&, Options&),
-                     int (*run)(const Options&, Context&)) {
-  return registerCommand(app, context, name, bind, run);
-}
-/// The same for a command that a mission completes.
-template <typename Options>
-CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*bind)(CLI::App&, Options&),
-                     int (*run)(Options&, Context&)) {
-  return registerCommand(app, context, name, bind, run);
 }
 
 }  // namespace talus::cli

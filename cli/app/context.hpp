@@ -5,9 +5,9 @@
 #include <csignal>
 #include <cstdint>
 #include <functional>
-#include <iosfwd>
 #include <memory>
 #include <mutex>
+#include <sstream>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -132,6 +132,29 @@ nlohmann::ordered_json jsonList(const Range& range, Of of) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& element : range) list.push_back(of(element));
   return list;
+}
+
+/// Returns the texts of(element) of the elements of a range, separated.
+template <typename Range, typename Of>
+std::string listText(const Range& range, Of of, const char* separator = ", ") {
+  std::string text;
+  for (const auto& element : range) text += (text.empty() ? "" : separator) + of(element);
+  return text;
+}
+
+/// Returns the words of a text in lines for which fits(line) is true; a longer word has its own line.
+template <typename Fits>
+std::vector<std::string> wrappedLines(const std::string& text, Fits fits) {
+  std::vector<std::string> lines{""};
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
+    if (lines.back().empty() || fits(longer))
+      lines.back() = longer;
+    else
+      lines.push_back(word);
+  }
+  return lines;
 }
 
 /// Returns JSON as text, indented by `indent` blanks, or on one line if `indent` is negative. NaN and

@@ -8,9 +8,11 @@
 #include <sstream>
 #include <utility>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/app/options.hpp>
 #include <talus/cli/app/texts.hpp>
 #include <talus/common/common.hpp>
@@ -155,13 +157,8 @@ std::string entry(const std::string& name, const std::string& description) {
 // CLI11's description of a check, such as "{a,b}" or "INT in [1 - 9]", in words.
 std::string checkText(const std::string& check) {
   if (check.empty()) return "";
-  if (check.front() == '{') {
-    std::string words = "one of";
-    std::istringstream choices(check.substr(1, check.size() - 2));
-    for (std::string word; std::getline(choices, word, ',');)
-      words += (words == "one of" ? " " : ", ") + word;
-    return words;
-  }
+  if (check.front() == '{')
+    return "one of " + boost::replace_all_copy(check.substr(1, check.size() - 2), ",", ", ");
   std::smatch range;
   return std::regex_search(check, range, std::regex(R"(in \[(\S+) - (\S+)\])"))
              ? range[1].str() + " to " + range[2].str()
@@ -208,21 +205,9 @@ std::size_t endOfTypeName(const std::string& type) {
   return at;
 }
 
-std::string wrapped(std::string_view text, std::size_t width) {
-  std::string out;
-  std::size_t used = 0;
-  std::istringstream words{std::string(text)};
-  for (std::string word; words >> word; used += word.size()) {
-    if (used > 0 && used + 1 + word.size() > width) {
-      out += '\n';
-      used = 0;
-    } else if (used > 0) {
-      out += ' ';
-      ++used;
-    }
-    out += word;
-  }
-  return out;
+std::string wrapped(const std::string& text, std::size_t width) {
+  const auto fits = [width](const std::string& line) { return line.size() <= width; };
+  return listText(wrappedLines(text, fits), std::identity(), "\n");
 }
 
 // Headings appear in the order of their first options; options without a heading come last.
@@ -266,9 +251,14 @@ CLI::App& addSubcommand(CLI::App& app, const std::string& name) {
   return command;
 }
 
-void groupOptions(CLI::App& command, const std::string& heading) {
-  for (CLI::Option* option : command.get_options())
-    if (option->get_group() == "Options" && option != command.get_help_ptr()) option->group(heading);
+void describeOptions(CLI::App& command) {
+  for (const YAML::Node& headings : {texts()["options"], texts()["calls"][command.get_name()]["options"]})
+    for (const auto& heading : headings)
+      for (const auto& text : heading.second)
+        if (CLI::Option* option = command.get_option_no_throw(text.first.Scalar())) {
+          option->group(heading.first.Scalar());
+          if (!text.second.IsNull()) option->description(text.second.Scalar());
+        }
 }
 
 }  // namespace talus::cli

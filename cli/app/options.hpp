@@ -3,7 +3,6 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -19,11 +18,12 @@ void refuseEmptyValues(CLI::App& program);
 /// hexadecimal or octal. Throws InputError with the name of the option.
 void checkNumbers(const CLI::App& command);
 
-/// Adds an option or argument to a command. `name` ends in the name of its value, after a blank: "--rover ROVER".
+/// Adds an option or argument to a command. `name` may end in the name of its value, after a blank: "--rover ROVER".
 template <typename T>
-CLI::Option* addOption(CLI::App& command, const std::string& name, T& value, const std::string& text) {
+CLI::Option* addOption(CLI::App& command, const std::string& name, T& value) {
   const std::size_t blank = name.find(' ');
-  return command.add_option(name.substr(0, blank), value, text)->type_name(name.substr(blank + 1));
+  CLI::Option* option = command.add_option(name.substr(0, blank), value);
+  return blank == name.npos ? option : option->type_name(name.substr(blank + 1));
 }
 
 /// Returns a check that rejects values other than finite numbers for which `holds` is true; the reason ends in `must`.
@@ -54,7 +54,7 @@ std::size_t endOfTypeName(const std::string& type);
 
 /// Returns the text broken at blanks into lines of at most `width` characters; a longer word has its own
 /// line.
-std::string wrapped(std::string_view text, std::size_t width);
+std::string wrapped(const std::string& text, std::size_t width);
 
 /// Formatter of --help within kHelpWidth. The left column has the option and its value; the right column has
 /// the description, with default, choices and exclusions in brackets.
@@ -68,7 +68,7 @@ class HelpFormat : public CLI::Formatter {
 /// Adds a subcommand with its texts in cli/app/texts.yaml: group, purpose, and examples with remarks as footer.
 CLI::App& addSubcommand(CLI::App& app, const std::string& name);
 
-/// Assigns the heading `heading` in --help to all options of the command that have no heading yet.
-void groupOptions(CLI::App& command, const std::string& heading);
+/// Assigns the options of a subcommand, or of the program, their headings and texts in cli/app/texts.yaml.
+void describeOptions(CLI::App& command);
 
 }  // namespace talus::cli

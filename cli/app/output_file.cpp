@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -165,9 +164,7 @@ const Names kForeign{".db",   ".sqlite", ".sqlite3", ".shp", ".kmz", ".xml", ".v
                      ".js",   ".so",     ".a",       ".o",   ".exe", ".deb"};
 
 const Names* formatOf(const std::string& name) {
-  std::string extension = fs::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = maps::lower(fs::path(name).extension().string());
   for (const Names& names : kFormats)
     if (std::find(names.begin(), names.end(), extension) != names.end()) return &names;
   return std::find(kForeign.begin(), kForeign.end(), extension) != kForeign.end() ? &kForeign : nullptr;
@@ -181,9 +178,8 @@ bool leavesItsFolder(const fs::path& link) {
 
 }  // namespace
 
-CLI::Option* addOutput(CLI::App& command, const std::string& name, std::string& path,
-                       const std::string& text) {
-  return addOption(command, name, path, text)
+CLI::Option* addOutput(CLI::App& command, const std::string& name, std::string& path) {
+  return addOption(command, name, path)
       ->check(CLI::Validator([](std::string&) { return std::string(); }, "", kMark));
 }
 

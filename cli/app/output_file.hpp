@@ -31,8 +31,7 @@ class FileLock {
 };
 
 /// Declares an option for an output file, as addOption() does, which checkOutputs() checks.
-CLI::Option* addOutput(CLI::App& command, const std::string& name, std::string& path,
-                       const std::string& text);
+CLI::Option* addOutput(CLI::App& command, const std::string& name, std::string& path);
 
 /// Checks that an output path does not require --force. Throws InputError for one of the `inputs`, a journal,
 /// SQLite's files beside a journal, a path that is not a regular file, and a symbolic link to another folder.

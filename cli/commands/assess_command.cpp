@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <talus/cli/app/command.hpp>
@@ -18,34 +16,17 @@ struct AssessCommand : AssessOptions {
 };
 
 void bind(CLI::App& command, AssessCommand& options) {
-  addOption(command, "table T.csv", options.table.path, "wheel telemetry, one row per wheel and moment")
-      ->required();
-  addOption(command, "--slope RAD", options.slope_rad, "slope to climb");
-  addOption(command, "--slope-uncertainty RAD", options.margin_rad,
-            "uncertainty of the slope, plus or minus");
-  command.add_option("--z-threshold", options.z_threshold, "z/r above which the category drops one level");
-  command.add_option("--z-critical", options.z_critical, "z/r above which the category is dangerous");
-  groupOptions(command, "Category");
-  auto* model = command.add_option(
-      "--model", options.model,
-      "model that gives the drawbar pull: from `talus trace --model-out`, a base model or a soil");
-  model->type_name("M.yaml");
-  command
-      .add_option("--formula", options.formula,
-                  "formula of drawbar pull from W, T and z: thesis 3.6, 3.12, 3.21, or single-force (ours)")
-      ->check(CLI::IsMember(pullFormulas()))
-      ->excludes(model);
-  command.add_flag("--extrapolate", options.extrapolate,
-                   "also forecast the drawbar pull at the reference slip and its maximum over slip, from the "
-                   "soil estimated on all rows or from the model");
-  command
-      .add_option("--reference-slip", options.reference_slip, "reference slip of --extrapolate (thesis 3.5)")
-      ->check(CLI::Range(0.01, 1.0));
-  addOption(command, "--rover NAME|FILE", options.rover,
-            "rover that supplies wheel dimensions missing from the file");
-  command.add_option("--noise", options.noise, "relative standard deviation of each reading")
-      ->check(CLI::Range(0.0, 0.5));
-  groupOptions(command, "Drawbar pull");
+  addOption(command, "table T.csv", options.table.path)->required();
+  addOption(command, "--slope RAD", options.slope_rad);
+  addOption(command, "--slope-uncertainty RAD", options.margin_rad);
+  addOption(command, "--z-threshold", options.z_threshold);
+  addOption(command, "--z-critical", options.z_critical);
+  auto* model = addOption(command, "--model M.yaml", options.model);
+  addOption(command, "--formula", options.formula)->check(CLI::IsMember(pullFormulas()))->excludes(model);
+  command.add_flag("--extrapolate", options.extrapolate);
+  addOption(command, "--reference-slip", options.reference_slip)->check(CLI::Range(0.01, 1.0));
+  addOption(command, "--rover NAME|FILE", options.rover);
+  addOption(command, "--noise", options.noise)->check(CLI::Range(0.0, 0.5));
   addTableOptions(command, options.columns);
 }
 

@@ -26,37 +26,18 @@ struct BenchOptions {
 };
 
 void bind(CLI::App& command, BenchOptions& options) {
-  command.add_option(
-      "suite", options.suite.names,
-      "one or more of: generated (crater field, dunes, rocks), slip (uncertain slip; routes are "
-      "driven over the true slip), grids (walls, known optimum), an elevation file, a MovingAI "
-      ".scen beside its .map");
-  command
-      .add_option("--planners", options.planners,
-                  "planners to compare, separated by commas (default: all). OMPL's begin with the field's "
-                  "route, but those with "
-                  ":cold; NAME:range=20 sets a parameter by OMPL's name")
-      ->delimiter(',');
-  addOption(command, "--plugin FILE.so", options.plugins, "planner plugin to compare, too; may be repeated");
-  command.add_option("--runs", options.runs, "runs per case and planner, each with its own seed")
-      ->check(positive());
-  addOption(command, "--time S", options.time_limit_s, "time limit of one run")->check(positive());
-  command.add_option("--pairs", options.suite.pairs, "start and goal pairs per map")->check(positive());
-  addOption(command, "--turning-radius METRES", options.suite.turning_radius_m,
-            "minimum turning radius of planners with kinematics; 0: the rover turns in place (default: "
-            "the rover's)")
-      ->check(turningRadius());
-  command.add_option("--side", options.suite.side_cells, "side of a generated site, in cells")
-      ->check(CLI::Range(32, 10000));
-  addOption(command, "--part K/N", options.part,
-            "run part K of N alone, and keep its results in the folder; the call that finds the last part "
-            "there writes the comparison");
-  groupOptions(command, "Cases and runs");
+  addOption(command, "suite", options.suite.names);
+  addOption(command, "--planners", options.planners)->delimiter(',');
+  addOption(command, "--plugin FILE.so", options.plugins);
+  addOption(command, "--runs", options.runs)->check(positive());
+  addOption(command, "--time S", options.time_limit_s)->check(positive());
+  addOption(command, "--pairs", options.suite.pairs)->check(positive());
+  addOption(command, "--turning-radius METRES", options.suite.turning_radius_m)->check(turningRadius());
+  addOption(command, "--side", options.suite.side_cells)->check(CLI::Range(32, 10000));
+  addOption(command, "--part K/N", options.part);
   addReadOptions(command, options.suite.ground.elevation);
   addGroundChoices(command, options.suite.ground);
-  addOption(command, "-o,--output FOLDER", options.folder,
-            "folder for the OMPL logs, the table and the page");
-  groupOptions(command, "Output");
+  addOption(command, "-o,--output FOLDER", options.folder);
 }
 
 std::string fileName(std::string name) {

@@ -20,7 +20,7 @@ struct CheckOptions {
 };
 
 void bind(CLI::App& command, CheckOptions& options) {
-  addOption(command, "file FILE.yaml", options.file, "cases to run")->required();
+  addOption(command, "file FILE.yaml", options.file)->required();
 }
 
 // The call of a case: talus OPERATION ARGUMENTS --KEY=VALUE, for each key of `input`; true is a flag.

@@ -27,20 +27,13 @@ struct CostmapOptions {
 
 void bind(CLI::App& command, CostmapOptions& options) {
   addGroundOptions(command, options.ground);
-  addOutput(command, "-o,--output MAP.ot", options.output, "traversability map to write");
-  addOutput(command, "--geotiff FILE.tif", options.geotiff,
-            "GeoTIFF of layers to write, and FILE.qml beside it: the style of allowed_headings for QGIS");
-  addOutput(command, "--categories FILE.tif", options.categories,
-            "GeoTIFF of the categories to write, with names, colours and overviews, and FILE.qml beside it: "
-            "the style that QGIS reads by itself");
-  addOutput(
-      command, "--nav2 FILE.yaml", options.nav2,
-      "map of ROS' map_server to write, and FILE.pgm beside it: free where safe, or marginal and allowed");
-  addOutput(command, "--png FILE.png", options.png, "picture to write");
-  addOutput(command, "--octovis FILE.ot", options.octovis, "ColorOcTree to write, for display in octovis");
-  addOutput(command, "--unsafe AREA.gpkg", options.unsafe,
-            "polygons to write of the ground that no heading may enter");
-  groupOptions(command, "Output");
+  addOutput(command, "-o,--output MAP.ot", options.output);
+  addOutput(command, "--geotiff FILE.tif", options.geotiff);
+  addOutput(command, "--categories FILE.tif", options.categories);
+  addOutput(command, "--nav2 FILE.yaml", options.nav2);
+  addOutput(command, "--png FILE.png", options.png);
+  addOutput(command, "--octovis FILE.ot", options.octovis);
+  addOutput(command, "--unsafe AREA.gpkg", options.unsafe);
 }
 
 void writeUnsafe(const costmap::TraversabilityMap& map, const std::string& path) {

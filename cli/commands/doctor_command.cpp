@@ -1,5 +1,4 @@
 // talus doctor: capabilities of this installation and the values in use.
-#include <utility>
 #include <vector>
 
 #include <cpl_string.h>

@@ -1,6 +1,5 @@
 // talus drive DEM --truth TRUTH.yaml: simulates a traverse over soils that are unknown to the planner.
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -45,13 +44,11 @@ std::string refusedBelief(const std::string& word) {
 
 void bindSensors(CLI::App& command, DriveCommandOptions& options) {
   const auto& faults = planner::sensorFaultNames();
-  command.add_option("--fault", options.fault, "sensor fault during the whole traverse")
+  addOption(command, "--fault", options.fault)
       ->check(CLI::IsMember(std::vector<std::string>(faults.begin(), faults.end())));
-  addOption(command, "--pose-drift SHARE", options.sensors.pose_drift,
-            "drift of the estimated pose per metre driven")
+  addOption(command, "--pose-drift SHARE", options.sensors.pose_drift)
       ->check(CLI::Range(0.0, planner::kMostPoseDrift));
-  command.add_option("--noise", options.noise, "noise and dropouts of slip, torque and sinkage")
-      ->check(CLI::IsMember({"on", "off"}));
+  addOption(command, "--noise", options.noise)->check(CLI::IsMember({"on", "off"}));
 }
 
 planner::SensorOptions sensorsOf(const DriveCommandOptions& options) {
@@ -65,39 +62,19 @@ planner::SensorOptions sensorsOf(const DriveCommandOptions& options) {
 
 void bind(CLI::App& command, DriveCommandOptions& options) {
   addGroundOptions(command, options.ground);
-  addOption(command, "--truth TRUTH.yaml", options.truth,
-            "true soils, soft patches and random variation; format below")
-      ->required();
-  addOption(command, "--start P", options.start, "start of the traverse (format as in `talus plan --help`)")
-      ->required();
-  addOption(command, "--goal P", options.goal, "goal of the traverse")->required();
-  command
-      .add_option(
-          "--belief", options.belief,
-          "what the planner knows of the soil: geometry only, the prior (along-only: and slopes along the "
-          "heading alone), the prior updated online by telemetry, or the true soil (perfect knowledge); "
-          "`all` compares the five in the same worlds")
+  addOption(command, "--truth TRUTH.yaml", options.truth)->required();
+  addOption(command, "--start P", options.start)->required();
+  addOption(command, "--goal P", options.goal)->required();
+  addOption(command, "--belief", options.belief)
       ->check(CLI::Validator(refusedBelief, "{geometry,along-only,prior,online,perfect-knowledge,all}"));
-  auto* worlds = addOption(command, "--worlds N", options.worlds,
-                           "number of random worlds; --threads run at a time, or one per rank under mpirun")
-                     ->check(CLI::Range(1, 100000));
-  auto* part = command.add_option("--part", options.part,
-                                  "simulate part K of N of the worlds alone, and keep its results in the "
-                                  "folder; the call that finds the last part there prints the rates");
-  part->type_name("K/N")->needs(worlds);
-  addPluginOption(command, options.plugin);
-  addPluginTime(command, options.time_limit_s);
+  auto* worlds = addOption(command, "--worlds N", options.worlds)->check(CLI::Range(1, 100000));
+  auto* part = addOption(command, "--part K/N", options.part)->needs(worlds);
+  addOption(command, "--plugin FILE.so", options.plugin);
+  addOption(command, "--time S", options.time_limit_s)->check(positive())->needs("--plugin");
   bindSensors(command, options);
-  groupOptions(command, "Simulation");
-  addOutput(command, "--html R.html", options.html,
-            "page to write: the simulated traverse with a time slider")
-      ->excludes(worlds);
-  addOutput(command, "--telemetry T.csv", options.telemetry,
-            "simulated wheel telemetry to write, for `talus update`")
-      ->excludes(worlds);
-  addOption(command, "-o,--output FOLDER", options.folder, "folder for the results of the parts")
-      ->needs(part);
-  groupOptions(command, "Output");
+  addOutput(command, "--html R.html", options.html)->excludes(worlds);
+  addOutput(command, "--telemetry T.csv", options.telemetry)->excludes(worlds);
+  addOption(command, "-o,--output FOLDER", options.folder)->needs(part);
 }
 
 // Simulates many worlds under one belief or all of them; JSON includes the failed worlds. Without an answer while parts
@@ -160,13 +137,11 @@ int runOne(const planner::SimulationSite& site, const DriveCommandOptions& optio
 // Reads the truth and checks that its classes are classes of the map.
 planner::Truth truthFor(const costmap::GroundModel& model, const std::string& path) {
   planner::Truth truth = readTruth(path);
-  std::string known;
-  for (const costmap::GroundClass& ground : model.parts().classes)
-    known += (known.empty() ? "" : ", ") + std::to_string(ground.number);
+  const auto known = [](const costmap::GroundClass& ground) { return std::to_string(ground.number); };
   for (const auto& [number, soil] : truth.classes)
     if (model.classIndex(number) < 0)
       throw InputError({path, fmt::format("class {} is not a class of the map", number),
-                        fmt::format("its classes are {}", known)});
+                        "its classes are " + listText(model.parts().classes, known)});
   return truth;
 }
 

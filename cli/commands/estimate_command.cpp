@@ -24,45 +24,23 @@ struct EstimateCommand : EstimateOptions {
 };
 
 void bind(CLI::App& command, EstimateCommand& options) {
-  addOption(command, "table T.csv", options.table.path,
-            "wheel telemetry, or plate and shear tests for bevameter")
-      ->required();
-  command.add_option("--method", options.method, "estimation method")
-      ->required()
-      ->check(CLI::IsMember(estimateMethods()));
-  addOption(command, "--shear-modulus M|HOW", options.shear_modulus,
-            "K in metres, or the method that finds it: error-minimisation, effective-torque, "
-            "effective-torque-printed or joint (default: the file's shear_modulus_m, else the prior's, "
-            "else joint; wong-reece infers it)")
+  addOption(command, "table T.csv", options.table.path)->required();
+  addOption(command, "--method", options.method)->required()->check(CLI::IsMember(estimateMethods()));
+  addOption(command, "--shear-modulus M|HOW", options.shear_modulus)
       ->check([](const std::string& word) -> std::string {
         if (std::ranges::find(modulusMethods(), word) != modulusMethods().end()) return {};
         return CLI::Number(word).empty()
                    ? std::string()
                    : "'" + word + "' is neither a length in metres nor a method that finds K";
       });
-  addOption(
-      command, "--prior NAME|FILE", options.prior,
-      "prior soils with {mean, std} (default: soils in general for wong-reece, none for other methods)");
-  addOption(command, "--model M.yaml", options.model,
-            "refined model; its effects on sinkage, torque and drawbar pull are modelled and not "
-            "attributed to the soil (wong-reece)");
-  addOption(command, "--rover NAME|FILE", options.rover,
-            "rover that supplies wheel dimensions missing from the file");
-  addOption(command, "--plate-width M", options.plate_width_m,
-            "plate width b where it is missing from the file (bevameter)")
-      ->check(CLI::Range(1e-3, 10.0));
-  command
-      .add_option(
-          "--noise", options.noise,
-          "relative standard deviation of each reading (wong-reece; default: estimated from the rows)")
-      ->check(CLI::Range(1e-4, 0.5));
-  command.add_flag("--recursive", options.recursive,
-                   "process the rows one by one in constant memory; print the estimate after each row (not "
-                   "for wong-reece and bevameter)");
-  groupOptions(command, "Method");
+  addOption(command, "--prior NAME|FILE", options.prior);
+  addOption(command, "--model M.yaml", options.model);
+  addOption(command, "--rover NAME|FILE", options.rover);
+  addOption(command, "--plate-width M", options.plate_width_m)->check(CLI::Range(1e-3, 10.0));
+  addOption(command, "--noise", options.noise)->check(CLI::Range(1e-4, 0.5));
+  command.add_flag("--recursive", options.recursive);
   addTableOptions(command, options.columns);
-  addOutput(command, "--html R.html", options.html, "page to write, with the fit");
-  groupOptions(command, "Output");
+  addOutput(command, "--html R.html", options.html);
 }
 
 Json runningJson(const SoilEstimate& e) {

@@ -19,16 +19,9 @@ struct ExplainOptions {
 
 void bind(CLI::App& command, ExplainOptions& options) {
   addGroundOptions(command, options.ground);
-  addOption(command, "--at P", options.at,
-            "place: x,y in map metres; lat,lon with the suffix d on each; or a vector file")
-      ->required();
-  addHeading(command, "--heading", options.heading_rad,
-             "heading, counter-clockwise from east (default: the worst heading)");
-  command.add_flag(
-      "--next", options.next,
-      "where to drive next: the allowed place nearby whose reading is expected to tell most about "
-      "ground that is not safe");
-  groupOptions(command, "Place");
+  addOption(command, "--at P", options.at)->required();
+  addHeading(command, "--heading", options.heading_rad);
+  command.add_flag("--next", options.next);
 }
 
 nlohmann::ordered_json explainJson(const costmap::Explanation& why, const maps::Point& point,

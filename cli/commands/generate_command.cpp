@@ -83,15 +83,10 @@ constexpr std::array<std::pair<std::string_view, maps::SiteKind>, 3> kKinds{
 void bind(CLI::App& command, GenerateOptions& options) {
   std::vector<std::string> names;
   for (const auto& [name, kind] : kKinds) names.emplace_back(name);
-  command.add_option("KIND", options.kind, "craters (Moon), dunes or rocks (Mars)")
-      ->required()
-      ->check(CLI::IsMember(names));
-  addOption(command, "--size N", options.size, "side in cells, or WIDTHxHEIGHT (default: 512)");
-  addOption(command, "--resolution METRES", options.site.resolution_m, "cell size")
-      ->check(CLI::Range(0.01, 1000.0));
-  addOutput(command, "-o,--output FILE.tif", options.output,
-            "elevation map to write; its layers are written to the same folder")
-      ->required();
+  addOption(command, "KIND", options.kind)->required()->check(CLI::IsMember(names));
+  addOption(command, "--size N", options.size);
+  addOption(command, "--resolution METRES", options.site.resolution_m)->check(CLI::Range(0.01, 1000.0));
+  addOutput(command, "-o,--output FILE.tif", options.output)->required();
 }
 
 maps::SiteOptions siteOf(const GenerateOptions& options, const Context& context) {

@@ -123,7 +123,7 @@ constexpr Topic kTopics[] = {
 void bind(CLI::App& command, HelpOptions& options) {
   std::string topics;
   for (const Topic& topic : kTopics) topics += fmt::format("{} ({}), ", topic.name, topic.about);
-  command.add_option("TOPIC", options.topic, topics + "or the name of a call");
+  addOption(command, "TOPIC", options.topic)->description(topics + "or the name of a call");
   options.command = &command;
 }
 

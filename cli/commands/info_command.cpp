@@ -65,8 +65,7 @@ std::string infoText(const maps::ElevationMap& map, const nlohmann::ordered_json
 
 void bind(CLI::App& command, InfoOptions& options) {
   addMapOptions(command, options.map);
-  addOption(command, "--footprint METRES", options.footprint_m,
-            "radius of the disc over which slope is computed (default: 3 x 3 cells)");
+  addOption(command, "--footprint METRES", options.footprint_m);
 }
 
 int run(const InfoOptions& options, Context& context) {

@@ -21,8 +21,7 @@ struct InitOptions {
 
 void bind(CLI::App& command, InitOptions& options) {
   addMapOptions(command, options.map);
-  addOutput(command, "-o,--output MISSION.yaml", options.output, "mission to write");
-  groupOptions(command, "Output");
+  addOutput(command, "-o,--output MISSION.yaml", options.output);
 }
 
 // Largest set of cells that are connected by drives between cell centres in both directions; empty if no cell

@@ -47,7 +47,7 @@ int run(const PluginsOptions& options, Context& context) {
 }
 
 void bind(CLI::App& app, PluginsOptions& options) {
-  app.add_option("file", options.file, "shared library of a planner plugin (default: the built-in planners)");
+  addOption(app, "file", options.file);
 }
 
 }  // namespace

@@ -12,16 +12,11 @@ struct PredictOptions {
 };
 
 void bind(CLI::App& command, PredictOptions& options) {
-  addOption(command, "telemetry T.csv", options.table,
-            "operating conditions, one row each: load_N, slip, ...")
-      ->required();
-  addOption(command, "--model M.yaml", options.model, "refined or base model, or a soil")->required();
-  addOption(command, "--rover NAME|FILE", options.rover,
-            "rover that supplies wheel dimensions missing from the file");
-  groupOptions(command, "Model");
+  addOption(command, "telemetry T.csv", options.table)->required();
+  addOption(command, "--model M.yaml", options.model)->required();
+  addOption(command, "--rover NAME|FILE", options.rover);
   addTableOptions(command, options.columns);
-  addOutput(command, "-o,--output OUT.csv", options.output, "rows to write, with predictions appended")
-      ->required();
+  addOutput(command, "-o,--output OUT.csv", options.output)->required();
 }
 
 int run(const PredictOptions& options, Context& context) {

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <memory>
 #include <new>
-#include <optional>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -164,20 +163,16 @@ int parseFailure(const CLI::App& app, const CLI::ParseError& error) {
 void addGlobalOptions(CLI::App& app, Context& context) {
   app.set_version_flag("--version", "talus " TALUS_VERSION);
   app.set_help_flag("-h,--help", "print this help");
-  app.add_flag("--json", context.json, "print results as JSON");
-  app.add_flag("--quiet", context.quiet, "print no progress and no warnings");
-  app.add_flag("--force", context.force,
-               "overwrite inputs, journals, devices and links to other folders, too");
-  app.add_option_function<std::uint64_t>(
-         "--max-memory", setMemoryBudget,
-         "memory that the call may take, such as 4GB (default: half of what is free)")
+  app.add_flag("--json", context.json);
+  app.add_flag("--quiet", context.quiet);
+  app.add_flag("--force", context.force);
+  app.add_option_function<std::uint64_t>("--max-memory", setMemoryBudget)
       ->transform(CLI::AsSizeValue(false))
       ->transform(decimalSize())
       ->check(numberThat([](double bytes) { return bytes >= kLeastMemory_B; }, "100 MB or more, in bytes"))
       ->type_name("SIZE");
-  addOption(app, "--seed N", context.seed, "seed of the random numbers")->check(within(0.0, kGreatestSeed));
-  addOption(app, "--threads N", context.threads, "maximum number of threads (default: one per core)")
-      ->check(CLI::Range(1, 1024));
+  addOption(app, "--seed N", context.seed)->check(within(0.0, kGreatestSeed));
+  addOption(app, "--threads N", context.threads)->check(CLI::Range(1, 1024));
   app.fallthrough();
   app.require_subcommand(1);
 }
@@ -234,6 +229,7 @@ int run(int argc, const char* const* argv, AddCommand* add) {
     app.footer(
         "Topics: talus help formats, soils, rovers, missions. Manual page: talus help man. `./dev install`\n"
         "puts it in place, and the completion for bash, zsh and fish.");
+    describeOptions(app);
     add(app, context);
     refuseEmptyValues(app);
     code = parseAndRun(app, context, words(argc, argv));

@@ -51,17 +51,13 @@ std::string scoreText(const Score& s) {
 void bind(CLI::App& command, ScoreOptions& options) {
   addGroundOptions(command, options.ground);
   addCostCurve(command, options.ground);
-  addOption(command, "--path FILE", options.path,
-            "polyline: a line of a vector file, or CSV with x_m, y_m or lat, lon");
-  addPluginOption(command, options.plugin);
-  addOption(command, "--start PLACE", options.start,
-            "start of the plugin's route (format as in `talus plan --help`)");
-  addOption(command, "--goal PLACE", options.goal, "goal of the plugin's route");
-  addPluginTime(command, options.time_limit_s);
+  addOption(command, "--path FILE", options.path);
+  addOption(command, "--plugin FILE.so", options.plugin);
+  addOption(command, "--start PLACE", options.start);
+  addOption(command, "--goal PLACE", options.goal);
+  addOption(command, "--time S", options.time_limit_s)->check(positive())->needs("--plugin");
   addChassisOption(command, options.chassis);
-  command.add_flag("--prove", options.prove,
-                   "also plan between the ends: the proven bound, and the cost of the best route");
-  groupOptions(command, "Path");
+  command.add_flag("--prove", options.prove);
 }
 
 void requirePath(const ScoreOptions& options) {

@@ -21,38 +21,19 @@ struct TraceCommandOptions {
 };
 
 void bind(CLI::App& command, TraceCommandOptions& options) {
-  addOption(command, "telemetry T.csv", options.telemetry, "measured wheel telemetry")->required();
-  addOption(command, "--base B.yaml", options.base,
-            "base soil or model (default: a soil fitted to the data)");
-  addOption(command, "--formula 'Y = a*X + b*Z'", options.formula,
-            "trace this formula, linear in its parameters, in place of a wheel model; a table of runs over "
-            "time has distance_m, height_m, turning_rad, cross_slope_m, time_s, charge_As and energy_J");
-  addOption(command, "--rover NAME|FILE", options.rover,
-            "rover that supplies wheel dimensions missing from the file");
-  command
-      .add_option("--significance", options.significance,
-                  "share of tables without an effect in which one may be found")
-      ->check(CLI::Range(1e-3, 0.5));
-  auto* hold_out =
-      addOption(command, "--hold-out COLUMN[=VALUES]", options.hold_out,
-                "trace without these rows, then predict them: each level of a column in turn, or its values "
-                "V,V or LOW..HIGH; a value that holds a comma in double quotes");
-  auto* propose = addOption(command, "--propose N", options.propose,
-                            "runs to make next: where the causes that are left predict most apart")
-                      ->check(CLI::Range(1, 20))
-                      ->excludes(hold_out);
-  addOption(command, "--score RUNS.csv", options.score,
-            "measured runs, such as a proposed table with its empty columns filled: what they say of "
-            "each cause")
-      ->excludes(hold_out);
-  groupOptions(command, "Analysis");
+  addOption(command, "telemetry T.csv", options.telemetry)->required();
+  addOption(command, "--base B.yaml", options.base);
+  addOption(command, "--formula 'Y = a*X + b*Z'", options.formula);
+  addOption(command, "--rover NAME|FILE", options.rover);
+  addOption(command, "--significance", options.significance)->check(CLI::Range(1e-3, 0.5));
+  auto* hold_out = addOption(command, "--hold-out COLUMN[=VALUES]", options.hold_out);
+  auto* propose =
+      addOption(command, "--propose N", options.propose)->check(CLI::Range(1, 20))->excludes(hold_out);
+  addOption(command, "--score RUNS.csv", options.score)->excludes(hold_out);
   addTableOptions(command, options.columns);
-  addOutput(command, "--model-out M.yaml", options.model_out, "refined model to write")->excludes(hold_out);
-  addOutput(command, "--html R.html", options.html, "page to write, with charts")->excludes(hold_out);
-  addOutput(command, "-o,--output RUNS.csv", options.runs_out,
-            "proposed runs to write, with what each cause predicts")
-      ->needs(propose);
-  groupOptions(command, "Output");
+  addOutput(command, "--model-out M.yaml", options.model_out)->excludes(hold_out);
+  addOutput(command, "--html R.html", options.html)->excludes(hold_out);
+  addOutput(command, "-o,--output RUNS.csv", options.runs_out)->needs(propose);
 }
 
 /// Repeats the trace with rows held out and evaluates the rows that the search did not use.

@@ -1,10 +1,8 @@
 // talus update MAP.ot T.csv -o MAP2.ot: adds the telemetry of a drive to a map, leaves a drive out, lists drives.
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -31,25 +29,15 @@ struct UpdateOptions {
 };
 
 void bind(CLI::App& command, UpdateOptions& options) {
-  addOption(command, "MAP MAP.ot", options.map, "traversability map from `talus costmap`")->required();
-  addOption(command, "TELEMETRY T.csv", options.telemetry, "wheel telemetry");
-  addOutput(command, "-o,--output MAP2.ot", options.output, "map to write");
-  auto* journal = addOption(command, "--journal EVIDENCE.db", options.journal,
-                            "SQLite journal of every row, accepted or rejected");
-  command
-      .add_option("--pose-error", options.intake.pose_std_m,
-                  "standard deviation of x_m and y_m if there is no column pose_std_m [m]")
-      ->check(CLI::Range(0.0, 10.0));
-  command.add_flag("--replay", options.replay, "replay the whole journal instead of a telemetry file")
-      ->needs(journal);
-  addOption(command, "--join OTHER.db", options.joined,
-            "journal of another rover, whose drives --journal receives")
-      ->needs(journal);
-  addOption(command, "--without DRIVE", options.without,
-            "id of a drive (--list) to leave out of the map, as if never put in");
-  command.add_flag("--list", options.list,
-                   "list the drives of the map: sensors, what each taught, where ground rose or fell");
-  groupOptions(command, "Evidence");
+  addOption(command, "MAP MAP.ot", options.map)->required();
+  addOption(command, "TELEMETRY T.csv", options.telemetry);
+  addOutput(command, "-o,--output MAP2.ot", options.output);
+  auto* journal = addOption(command, "--journal EVIDENCE.db", options.journal);
+  addOption(command, "--pose-error", options.intake.pose_std_m)->check(CLI::Range(0.0, 10.0));
+  command.add_flag("--replay", options.replay)->needs(journal);
+  addOption(command, "--join OTHER.db", options.joined)->needs(journal);
+  addOption(command, "--without DRIVE", options.without);
+  command.add_flag("--list", options.list);
   addTableOptions(command, options.columns);
 }
 

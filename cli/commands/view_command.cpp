@@ -33,18 +33,12 @@ struct ViewOptions {
 
 void bind(CLI::App& command, ViewOptions& options) {
   addMapOptions(command, options.file, "FILE");
-  command.get_option("FILE")->description(
-      "route from `talus plan`, mission, traversability map, or elevation map");
-  addOption(command, "ROUTE ROUTE ...", options.others, "further routes, compared with the first one");
-  addOption(command, "--map MAP", options.map,
-            "map of a route (default: the map it was planned on, searched by its path and its name from the "
-            "folder of the route and from the current folder)");
-  addOption(command, "--title TEXT", options.title, "title of the page");
-  addOutput(command, "-o,--html PAGE.html", options.html,
-            "page to write (default: FILE with the ending .html in the current folder)");
-  addOutput(command, "--png FILE.png", options.png, "picture to write");
-  addImageOption(command, options.image);
-  groupOptions(command, "Page");
+  addOption(command, "ROUTE ROUTE ...", options.others);
+  addOption(command, "--map MAP", options.map);
+  addOption(command, "--title TEXT", options.title);
+  addOutput(command, "-o,--html PAGE.html", options.html);
+  addOutput(command, "--png FILE.png", options.png);
+  addOption(command, "--image ORTHO.tif", options.image)->check(CLI::ExistingFile);
 }
 
 // The map of a mission, with its start and goals.

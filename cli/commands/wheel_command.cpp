@@ -20,48 +20,32 @@ struct WheelOptions {
 };
 
 void bind(CLI::App& command, WheelOptions& options) {
-  auto* soil = addOption(command, "--soil NAME|FILE", options.soil, "soil: a library name or a YAML file");
-  auto* rover = addOption(command, "--rover NAME|FILE", options.rover,
-                          "rover with the wheel: a library name or a YAML file");
-  auto* load = addOption(command, "--load N", options.load_N, "wheel load [N] (default: the rover's)")
-                   ->check(finite());
-  auto* slip = addOption(command, "--slip I", options.slip, "slip, from -1 (locked) to 1 (spinning in place)")
-                   ->check(within(-1.0, 1.0));
-  auto* angle = addOption(command, "--slip-angle RAD", options.slip_angle_rad,
-                          "slip angle [rad] from the wheel plane to the travel, left positive")
+  auto* soil = addOption(command, "--soil NAME|FILE", options.soil);
+  auto* rover = addOption(command, "--rover NAME|FILE", options.rover);
+  auto* load = addOption(command, "--load N", options.load_N)->check(finite());
+  auto* slip = addOption(command, "--slip I", options.slip)->check(within(-1.0, 1.0));
+  auto* angle = addOption(command, "--slip-angle RAD", options.slip_angle_rad)
                     ->check(within(-0.5 * std::numbers::pi, 0.5 * std::numbers::pi));
-  groupOptions(command, "One wheel");
-  auto* inflation = addOption(command, "--inflation PA", options.inflation_Pa,
-                              "inflation pressure of a pneumatic tyre of the wheel's size [Pa]")
-                        ->check(notNegative());
-  auto* carcass = addOption(command, "--carcass PA", options.carcass_Pa,
-                            "stiffness of its carcass as a pressure [Pa] (default: 0)")
-                      ->check(notNegative())
-                      ->needs(inflation);
-  auto* hard =
-      command.add_flag("--hard-ground", options.hard_ground, "on rigid flat ground instead of a soil");
-  auto* torque = addOption(command, "--torque NM", options.torque_Nm,
-                           "torque of a rigid wheel on hard ground [Nm], in place of --slip")
-                     ->check(finite())
-                     ->needs(hard)
-                     ->excludes(slip);
+  auto* inflation = addOption(command, "--inflation PA", options.inflation_Pa)->check(notNegative());
+  auto* carcass =
+      addOption(command, "--carcass PA", options.carcass_Pa)->check(notNegative())->needs(inflation);
+  auto* hard = command.add_flag("--hard-ground", options.hard_ground);
+  auto* torque =
+      addOption(command, "--torque NM", options.torque_Nm)->check(finite())->needs(hard)->excludes(slip);
   for (auto* straight : {inflation, hard}) straight->excludes(angle);
   hard->excludes(soil);
-  groupOptions(command, "Tyres and hard ground (thesis C.2)");
-  auto* cases = addOption(command, "--cases IN.csv", options.cases, "solve each row of a CSV file");
-  addOutput(command, "-o,--output OUT.csv", options.output, "results of --cases to write")->needs(cases);
+  auto* cases = addOption(command, "--cases IN.csv", options.cases);
+  addOutput(command, "-o,--output OUT.csv", options.output)->needs(cases);
   for (auto* single : {soil, rover, load, slip, angle, inflation, carcass, hard, torque})
     cases->excludes(single);
-  groupOptions(command, "A table of wheels");
   addTableOptions(command, options.columns);
   for (const char* column : {"--column", "--columns", "--radius", "--width"})
     command.get_option(column)->needs(cases);
 }
 
 [[noreturn]] void lacking(const std::string& option) {
-  throw InputError({.where = "talus wheel",
-                    .reason = "missing " + option,
-                    .remedy = "give --soil, --rover and --slip, or --cases IN.csv -o OUT.csv"});
+  throw InputError(
+      {"talus wheel", "missing " + option, "give --soil, --rover and --slip, or --cases IN.csv -o OUT.csv"});
 }
 
 int runTable(const WheelOptions& options, Context& context) {

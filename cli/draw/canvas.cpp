@@ -79,40 +79,25 @@ void setFont(cairo_t* cairo, const TextStyle& style) {
 
 }  // namespace
 
-struct Canvas::Surface {
-  cairo_surface_t* surface = nullptr;
-  cairo_t* cairo = nullptr;
-
-  Surface() = default;
-  Surface(const Surface&) = delete;
-  Surface& operator=(const Surface&) = delete;
-  ~Surface() {
-    cairo_destroy(cairo);
-    cairo_surface_destroy(surface);
-  }
-};
-
-Canvas::Canvas(const Options& o) : surface_(std::make_unique<Surface>()) {
-  surface_->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o.width, o.height);
-  surface_->cairo = cairo_create(surface_->surface);
-  if (const cairo_status_t status = cairo_status(surface_->cairo); status != CAIRO_STATUS_SUCCESS)
+Canvas::Canvas(const Options& o) : cairo_(nullptr, cairo_destroy) {
+  cairo_surface_t* surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o.width, o.height);
+  cairo_.reset(cairo_create(surface));
+  cairo_surface_destroy(surface);  // the context keeps it
+  if (const cairo_status_t status = cairo_status(cairo_.get()); status != CAIRO_STATUS_SUCCESS)
     throw std::runtime_error(std::string("cannot draw: ") + cairo_status_to_string(status));
-  cairo_set_line_join(surface_->cairo, CAIRO_LINE_JOIN_ROUND);
-  cairo_set_line_cap(surface_->cairo, CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
   fill({0, 0, static_cast<double>(o.width), static_cast<double>(o.height)}, rgb(0xFFFFFF));
 }
 
-Canvas::~Canvas() = default;
-Canvas::Canvas(Canvas&&) noexcept = default;
-
 void Canvas::fill(const Box& box, Colour colour) {
-  setColour(surface_->cairo, colour);
-  cairo_rectangle(surface_->cairo, box.x, box.y, box.width, box.height);
-  cairo_fill(surface_->cairo);
+  setColour(cairo_.get(), colour);
+  cairo_rectangle(cairo_.get(), box.x, box.y, box.width, box.height);
+  cairo_fill(cairo_.get());
 }
 
 void Canvas::line(std::span<const Spot> spots, const Stroke& stroke) {
-  cairo_t* c = surface_->cairo;
+  cairo_t* c = cairo_.get();
   setColour(c, stroke.colour);
   cairo_set_line_width(c, stroke.width);
   trace(c, spots);
@@ -120,20 +105,20 @@ void Canvas::line(std::span<const Spot> spots, const Stroke& stroke) {
 }
 
 void Canvas::polygon(std::span<const Spot> spots, Colour colour) {
-  setColour(surface_->cairo, colour);
-  trace(surface_->cairo, spots);
-  cairo_fill(surface_->cairo);
+  setColour(cairo_.get(), colour);
+  trace(cairo_.get(), spots);
+  cairo_fill(cairo_.get());
 }
 
 void Canvas::disc(Spot centre, double radius, Colour colour) {
-  setColour(surface_->cairo, colour);
-  cairo_new_path(surface_->cairo);
-  cairo_arc(surface_->cairo, centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi);
-  cairo_fill(surface_->cairo);
+  setColour(cairo_.get(), colour);
+  cairo_new_path(cairo_.get());
+  cairo_arc(cairo_.get(), centre.x, centre.y, radius, 0.0, 2.0 * std::numbers::pi);
+  cairo_fill(cairo_.get());
 }
 
 void Canvas::text(const std::string& text, Spot spot, const TextStyle& style) {
-  cairo_t* c = surface_->cairo;
+  cairo_t* c = cairo_.get();
   cairo_save(c);
   setFont(c, style);
   cairo_translate(c, spot.x, spot.y);
@@ -153,14 +138,14 @@ void Canvas::text(const std::string& text, Spot spot, const TextStyle& style) {
 }
 
 double Canvas::textWidth(const std::string& text, const TextStyle& style) {
-  setFont(surface_->cairo, style);
+  setFont(cairo_.get(), style);
   cairo_text_extents_t extents;
-  cairo_text_extents(surface_->cairo, text.c_str(), &extents);
+  cairo_text_extents(cairo_.get(), text.c_str(), &extents);
   return extents.x_advance;
 }
 
 void Canvas::image(const Image& image, const Box& box) {
-  cairo_t* c = surface_->cairo;
+  cairo_t* c = cairo_.get();
   auto* data = reinterpret_cast<unsigned char*>(const_cast<std::uint32_t*>(image.argb.data()));  // only read
   cairo_surface_t* source = cairo_image_surface_create_for_data(data, CAIRO_FORMAT_ARGB32, image.width,
                                                                 image.height, 4 * image.width);
@@ -176,17 +161,17 @@ void Canvas::image(const Image& image, const Box& box) {
 }
 
 void Canvas::clip(const Box& box) {
-  cairo_save(surface_->cairo);
-  cairo_rectangle(surface_->cairo, box.x, box.y, box.width, box.height);
-  cairo_clip(surface_->cairo);
+  cairo_save(cairo_.get());
+  cairo_rectangle(cairo_.get(), box.x, box.y, box.width, box.height);
+  cairo_clip(cairo_.get());
 }
 
 void Canvas::unclip() {
-  cairo_restore(surface_->cairo);
+  cairo_restore(cairo_.get());
 }
 
 std::string Canvas::bytes() {
-  cairo_surface_t* from = surface_->surface;
+  cairo_surface_t* from = cairo_get_target(cairo_.get());
   cairo_surface_flush(from);
   Image image(cairo_image_surface_get_width(from), cairo_image_surface_get_height(from));
   const auto* pixels = reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(from));

@@ -10,6 +10,8 @@
 
 #include <talus/terramech/mobility/category.hpp>
 
+struct _cairo;  // NOLINT(bugprone-reserved-identifier): cairo_t
+
 namespace talus::cli {
 
 /// A colour with components 0 to 1; alpha (opacity) is not premultiplied.
@@ -132,8 +134,6 @@ class Canvas {
   };
 
   explicit Canvas(const Options& options);
-  ~Canvas();
-  Canvas(Canvas&&) noexcept;
 
   void fill(const Box& box, Colour colour);
   void line(std::span<const Spot> spots, const Stroke& stroke);
@@ -153,8 +153,7 @@ class Canvas {
   std::string bytes();
 
  private:
-  struct Surface;
-  std::unique_ptr<Surface> surface_;
+  std::unique_ptr<_cairo, void (*)(_cairo*)> cairo_;
 };
 
 /// Returns the bytes of an image as a PNG file, compressed for speed.

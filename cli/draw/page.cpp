@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -87,11 +88,6 @@ ordered_json legendEntry(Colour colour, const std::string& label) {
   return {{"colour", hex(colour)}, {"label", label}};
 }
 
-maps::Point latticePoint(const maps::Grid& grid, double east, double north) {
-  return {grid.south_west.x_m + east * grid.width * grid.resolution_m,
-          grid.south_west.y_m + north * grid.height * grid.resolution_m};
-}
-
 /// Returns 32 colours of a scale in hexadecimal form, from low to high.
 ordered_json coloursOf(Scale scale) {
   ordered_json colours;
@@ -155,8 +151,9 @@ ordered_json latticeOf(const Scene& scene) {
       {"intervals", intervals}, {"latitude", ordered_json::array()}, {"longitude", ordered_json::array()}};
   for (int j = 0; j <= intervals; ++j)
     for (int i = 0; i <= intervals; ++i) {
+      const double step_m = grid.resolution_m / intervals;
       const maps::GeoPoint place = places.reverse(
-          latticePoint(grid, static_cast<double>(i) / intervals, static_cast<double>(j) / intervals));
+          {grid.south_west.x_m + i * step_m * grid.width, grid.south_west.y_m + j * step_m * grid.height});
       lattice["latitude"].push_back(number(place.latitude_rad / kDegree));
       lattice["longitude"].push_back(number(place.longitude_rad / kDegree));
     }
@@ -352,16 +349,11 @@ ordered_json dataOf(const Scene& scene) {
   return data;
 }
 
-void replaceAll(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-}
-
 /// JSON for a script element. "<" occurs only inside strings and is escaped, because "</script" or
 /// "<!--<script" would change how the page is parsed.
 std::string embedded(const ordered_json& data) {
   std::string text = jsonText(data);
-  replaceAll(text, "<", "\\u003c");
+  boost::replace_all(text, "<", "\\u003c");
   return text;
 }
 
@@ -391,8 +383,8 @@ std::string filledPage(std::string_view empty, const std::string& title, const s
   // The title is replaced before the data are inserted, so that user text in the data is never taken for a
   // place-holder.
   std::string html(empty);
-  replaceAll(html, "@TALUS_TITLE@", escaped(title));
-  replaceAll(html, "@TALUS_TEXT@", text);
+  boost::replace_all(html, "@TALUS_TITLE@", escaped(title));
+  boost::replace_all(html, "@TALUS_TEXT@", text);
   const std::string place = "@TALUS_DATA@";
   return html.replace(html.rfind(place), place.size(), embedded(data));
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/app/output_file.hpp>
 #include <talus/cli/draw/picture.hpp>
 #include <talus/cli/draw/route_summary.hpp>
@@ -130,16 +131,7 @@ Image underLight(Image colours, const maps::Raster<float>& shade, double relief)
 /// Breaks the title into lines of the given width; words are not split.
 std::vector<std::string> wrapped(const std::string& text, double width, const TextStyle& style) {
   Canvas measure({.width = 1, .height = 1});
-  std::vector<std::string> lines{""};
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
-    if (!lines.back().empty() && measure.textWidth(longer, style) > width)
-      lines.push_back(word);
-    else
-      lines.back() = longer;
-  }
-  return lines;
+  return wrappedLines(text, [&](const std::string& line) { return measure.textWidth(line, style) <= width; });
 }
 
 constexpr TextStyle kTitle{.size = 18, .bold = true};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <talus/cli/app/context.hpp>
 #include <talus/cli/draw/route_summary.hpp>
 #include <talus/cli/draw/scene.hpp>
 #include <talus/common/common.hpp>
@@ -102,10 +103,10 @@ HeadingCosts headingCosts(const costmap::TraversabilityMap& map, const Blocks& b
   return out;
 }
 
-void addLayer(Scene& scene, std::string name, Raster<float> values) {
-  ValueLayer layer{.name = std::move(name), .unit = "", .values = std::move(values), .range = {}};
-  layer.range = scaleRange(layer.values);
-  scene.layers.push_back(std::move(layer));
+void addLayer(Scene& scene, const std::string& name, Raster<float> values, const std::string& unit = "",
+              int decimals = 4) {
+  const Range range = scaleRange(values);
+  scene.layers.push_back({name, unit, std::move(values), range, false, decimals});
 }
 
 /// Adds an area of the blocks in which holds(cell) is true of a cell, unless there is none.
@@ -128,20 +129,12 @@ void addMissionLayers(Scene& scene, const costmap::TraversabilityMap& map, const
       return std::isfinite(layer.added_J_per_m[cell]) && layer.added_J_per_m[cell] > 0.0F;
     });
     if (scene.areas.size() == before) continue;
-    addLayer(scene, "layer " + layer.name, blocks.mean([&](Cell cell) { return layer.added_J_per_m[cell]; }));
-    scene.layers.back().unit = "J/m";
+    addLayer(scene, "layer " + layer.name, blocks.mean([&](Cell cell) { return layer.added_J_per_m[cell]; }),
+             "J/m");
   }
   addArea(scene, "keep-out", rgb(0x000000), blocks, [&](Cell cell) {
     return has(map.surface().hazards(cell), costmap::Hazard::KeepOut);
   });  // over the others
-}
-
-/// Names of the soils of the map's classes.
-std::string soilNames(const costmap::TraversabilityMap& map) {
-  std::string names;
-  for (const costmap::GroundClass& one : map.model().parts().classes)
-    names += (names.empty() ? "" : ", ") + one.soil.name;
-  return names;
 }
 
 /// Size of the map, such as "4 x 3.00 km, cells of 5 m".
@@ -169,12 +162,6 @@ Scene ground(const maps::ElevationMap& map, const Blocks& blocks, const SceneOpt
   return scene;
 }
 
-void addElevation(Scene& scene) {
-  addLayer(scene, "elevation", scene.elevation_m);
-  scene.layers.back().unit = "m";
-  scene.layers.back().decimals = 2;
-}
-
 /// Slope [deg]. If each cell is drawn: slope of the plane that `talus explain` prints. Otherwise: block mean
 /// of the planning slopes.
 Raster<float> slope_deg(const costmap::TraversabilityMap& map, const Blocks& blocks) {
@@ -189,9 +176,9 @@ Raster<float> slope_deg(const costmap::TraversabilityMap& map, const Blocks& blo
 }
 
 void addSlope(Scene& scene, Raster<float> values) {
-  ValueLayer slope{.name = "slope", .unit = "deg", .values = std::move(values), .range = {}, .decimals = 2};
-  slope.range = {0.0, std::max(1.0, scaleRange(slope.values).high)};
-  scene.layers.push_back(std::move(slope));
+  addLayer(scene, "slope", std::move(values), "deg", 2);
+  Range& range = scene.layers.back().range;
+  range = {0.0, std::max(1.0, range.high)};
 }
 
 /// A quantity of a route that is compared with that of another route.
@@ -346,7 +333,7 @@ Scene sceneOf(const maps::ElevationMap& map, const SceneOptions& options) {
   const Blocks blocks(map.grid(), options.max_side);
   Scene scene = ground(map, blocks, options);
   addSlope(scene, slope_deg(maps::terrainMetrics(scene.elevation_m, {})));
-  addElevation(scene);
+  addLayer(scene, "elevation", scene.elevation_m, "m", 2);
   return scene;
 }
 
@@ -361,9 +348,10 @@ Scene sceneOf(const costmap::TraversabilityMap& map, const SceneOptions& options
   addLayer(scene, "DP/W standard deviation", std::move(beliefs.pull_std));
   addLayer(scene, "z/r (sinkage / wheel radius)", std::move(beliefs.sinkage));
   addMissionLayers(scene, map, blocks);
-  addElevation(scene);
+  addLayer(scene, "elevation", scene.elevation_m, "m", 2);
   scene.facts.emplace_back("rover", map.model().rover().name);
-  scene.facts.emplace_back("soil", soilNames(map));
+  scene.facts.emplace_back("soil", listText(map.model().parts().classes,
+                                            [](const costmap::GroundClass& one) { return one.soil.name; }));
   return scene;
 }
 

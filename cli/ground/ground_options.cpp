@@ -38,13 +38,6 @@ using costmap::TraversabilityMap;
 
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
-maps::Layer layer(const maps::Grid& grid, std::string name, std::string unit,
-                  const std::function<float(maps::Cell)>& value) {
-  maps::Layer out{std::move(name), std::move(unit), maps::Raster<float>(grid)};
-  costmap::forEachCell(costmap::allOf(grid), [&](maps::Cell cell) { out.values[cell] = value(cell); });
-  return out;
-}
-
 // Energy [J/m] straight up (sign 1) or down (-1) the slope of the cell; NaN if the direction is refused.
 float energyAlong(const costmap::CostGrid& grid, maps::Cell cell, double sign) {
   const CellCode code = grid.at(cell);
@@ -67,72 +60,45 @@ std::vector<maps::Layer> siteLayers(const TraversabilityMap& map, int threads) {
     return map.surface().classIndex(cell) < 0 ? kNoValue : value;
   };
   costmap::PlaceBeliefs beliefs(map);
+  HeadingsOfCells headings(map);
   std::vector<maps::Layer> layers;
+  const auto add = [&](const char* name, const char* unit, const std::function<float(maps::Cell)>& value) {
+    layers.push_back({name, unit, maps::Raster<float>(grid)});
+    costmap::forEachCell(costmap::allOf(grid), [&](maps::Cell c) { layers.back().values[c] = value(c); });
+  };
   layers.push_back({"elevation", "m", map.elevation().elevation_m});
-  layers.push_back(layer(grid, "slope", "rad", [&](maps::Cell c) { return metrics.slope_rad(c); }));
-  layers.push_back(layer(grid, "aspect", "rad", [&](maps::Cell c) { return metrics.aspect_rad(c); }));
+  add("slope", "rad", [&](maps::Cell c) { return metrics.slope_rad(c); });
+  add("aspect", "rad", [&](maps::Cell c) { return metrics.aspect_rad(c); });
   layers.push_back({"roughness", "m", std::move(metrics.roughness_m)});
   layers.push_back({"step", "m", std::move(metrics.step_m)});
-  layers.push_back(layer(grid, "class", "",
-                         [&](maps::Cell c) { return static_cast<float>(map.surface().classNumber(c)); }));
-  layers.push_back(
-      layer(grid, "category", "", [&](maps::Cell c) { return static_cast<float>(beliefs.at(c).category); }));
-  HeadingsOfCells headings(map);
-  layers.push_back(
-      layer(grid, "allowed_headings", "", [&](maps::Cell c) { return static_cast<float>(headings.at(c)); }));
-  layers.push_back(layer(grid, "drawbar_pull_over_load", "",
-                         [&](maps::Cell c) { return known(c, beliefs.at(c).pull_mean); }));
-  layers.push_back(layer(grid, "drawbar_pull_over_load_std", "",
-                         [&](maps::Cell c) { return known(c, beliefs.at(c).pull_std); }));
-  layers.push_back(layer(grid, "sinkage_over_radius", "",
-                         [&](maps::Cell c) { return known(c, beliefs.at(c).sinkage_mean); }));
-  layers.push_back(layer(grid, "energy_per_metre_uphill", "J/m",
-                         [&](maps::Cell c) { return energyAlong(*published, c, 1.0); }));
-  layers.push_back(layer(grid, "energy_per_metre_downhill", "J/m",
-                         [&](maps::Cell c) { return energyAlong(*published, c, -1.0); }));
+  add("class", "", [&](maps::Cell c) { return static_cast<float>(map.surface().classNumber(c)); });
+  add("category", "", [&](maps::Cell c) { return static_cast<float>(beliefs.at(c).category); });
+  add("allowed_headings", "", [&](maps::Cell c) { return static_cast<float>(headings.at(c)); });
+  add("drawbar_pull_over_load", "", [&](maps::Cell c) { return known(c, beliefs.at(c).pull_mean); });
+  add("drawbar_pull_over_load_std", "", [&](maps::Cell c) { return known(c, beliefs.at(c).pull_std); });
+  add("sinkage_over_radius", "", [&](maps::Cell c) { return known(c, beliefs.at(c).sinkage_mean); });
+  add("energy_per_metre_uphill", "J/m", [&](maps::Cell c) { return energyAlong(*published, c, 1.0); });
+  add("energy_per_metre_downhill", "J/m", [&](maps::Cell c) { return energyAlong(*published, c, -1.0); });
   return layers;
 }
 
 void addMapOptions(CLI::App& command, ElevationFile& file, const std::string& name) {
-  command.add_option(name, file.path, "elevation map: any GDAL raster, or an OctoMap")->required();
+  addOption(command, name, file.path)->required();
   addReadOptions(command, file);
 }
 
 void addReadOptions(CLI::App& command, ElevationFile& file) {
   maps::ReadOptions& read = file.read;
-  addOption(command, "--band N", read.band, "band of elevations, counted from 1");
-  addOption(command, "--resolution METRES", read.resolution_m,
-            "cell size; required without a CRS; resamples with a CRS");
-  addOption(command, "--window BOX", file.window,
-            "read only this window: x0,y0,x1,y1, or lat,lon,lat,lon with the suffix d on each");
-  addOption(command, "--nodata VALUE", read.nodata, "value of cells without data");
-  command.add_flag("--keep-holes", read.keep_holes,
-                   "leave single cells without data unknown instead of interpolating them");
-  addOption(command, "--vertical-scale FACTOR", read.vertical_scale,
-            "factor on the heights; metres per unit where the file states an unknown one");
-  command.add_flag("--ignore-crs", read.ignore_crs,
-                   "ignore a wrong CRS and read as local metres (with --resolution)");
-  command.add_flag("--allow-vrt", read.allow_vrt,
-                   "read a virtual raster (VRT) whose files lie in its own folder");
-  addOption(command, "--below METRES", file.below_m,
-            "of an OctoMap: use the ground at or below this elevation, as under a bridge");
-  addOption(command, "--max-cells N", read.max_cells, "largest accepted map, in cells")
-      ->check(within(1.0, 1e15));
-  groupOptions(command, "Elevation map");
-}
-
-void addLayerOptions(CLI::App& command, SiteFiles& files) {
-  addOption(command, "--terrain FILE", files.classes, "raster of terrain classes");
-  addOption(command, "--terrain-band N", files.classes_band, "band of the raster, counted from 1");
-  addOption(command, "--rocks FILE", files.rocks, "raster of rock abundance, 0 to 1");
-  addOption(command, "--rocks-band N", files.rocks_band, "band of the raster, counted from 1");
-  addOption(command, "--keep-out FILE", files.keep_out,
-            "polygons of a vector file to keep out of; may be repeated");
-  addOption(
-      command, "--layer NAME=FILE", files.costs,
-      "joules a metre to add, as NAME=FILE of a raster or a layer plugin (.so): inf is refused, no data "
-      "counts as unknown; may be repeated");
-  groupOptions(command, "Layers");
+  addOption(command, "--band N", read.band);
+  addOption(command, "--resolution METRES", read.resolution_m);
+  addOption(command, "--window BOX", file.window);
+  addOption(command, "--nodata VALUE", read.nodata);
+  command.add_flag("--keep-holes", read.keep_holes);
+  addOption(command, "--vertical-scale FACTOR", read.vertical_scale);
+  command.add_flag("--ignore-crs", read.ignore_crs);
+  command.add_flag("--allow-vrt", read.allow_vrt);
+  addOption(command, "--below METRES", file.below_m);
+  addOption(command, "--max-cells N", read.max_cells)->check(within(1.0, 1e15));
 }
 
 SiteReading readingOf(const Context& context) {
@@ -153,30 +119,6 @@ constexpr float kSameHeight_m = 0.01F;
 
 bool isBeliefMap(const std::string& path) {
   return costmap::octomapType(path) == "TraversabilityTree";
-}
-
-void addPolicy(CLI::App& command, costmap::TravelPolicy& policy) {
-  command.add_flag("--no-marginal{false}", policy.allow_marginal, "exclude marginal cells");
-  command.add_flag("--allow-dangerous", policy.allow_dangerous,
-                   "allow dangerous cells where the drawbar pull is sufficient");
-  command.add_flag("--allow-unknown", policy.allow_unknown,
-                   "drive over cells without data, at the slope between the heights beside them");
-  command
-      .add_option_function<double>(
-          "--slope-uncertainty-deg", [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; },
-          "slope uncertainty on either side of a category threshold (default: 5)")
-      ->type_name("DEG");
-  addOption(command, "--time-weight W", policy.time_weight_W, "cost of time, joules per second");
-  addOption(command, "--entrapment FRACTION", policy.entrapment,
-            "fraction of the places with too weak soil that immobilise a rover that monitors its slip")
-      ->check(CLI::Range(0.0, 1.0));
-  command.add_flag("--unmonitored", policy.unmonitored,
-                   "slip is not monitored: every place with too weak soil immobilises the rover");
-  addOption(command, "--pose-error METRES", policy.pose_error_m,
-            "position error of the rover: soil is evaluated that far beyond the wheels")
-      ->check(CLI::Range(0.0, 100.0));
-  addOption(command, "--risk-weight J", policy.risk_weight_J, "cost of losing the rover, joules");
-  groupOptions(command, "Cost and thresholds");
 }
 
 // Returns true if no elevation map is given in addition to the built map.
@@ -278,39 +220,40 @@ SiteFiles GroundOptions::files() const {
 void addGroundOptions(CLI::App& command, GroundOptions& options) {
   options.call = &command;
   addMapOptions(command, options.elevation);
-  command.get_option("DEM")->description(
-      "elevation map: any GDAL raster, or an OctoMap; or the mission that describes the site");
-  addOption(command, "--map MAP.ot", options.map_file,
-            "traversability map from `talus costmap` or `talus update`");
-  groupOptions(command, "Elevation map");
+  addOption(command, "--map MAP.ot", options.map_file);
   addGroundChoices(command, options);
 }
 
 void addGroundChoices(CLI::App& command, GroundOptions& options) {
-  addLayerOptions(command, options);
-  addOption(command, "--soils FILE", options.soils, "soil of each terrain class");
-  auto* soil = addOption(command, "--soil SOIL", options.soil,
-                         "soil of cells without a class: a library name or a file");
-  addOption(command, "--model M.yaml", options.model,
-            "refined model of cells without a class, from `talus trace`, instead of --soil")
-      ->excludes(soil);
-  addOption(command, "--rover ROVER", options.rover, "rover: a library name or a file");
-  addOption(command, "--footprint METRES", options.footprint_m,
-            "radius over which slopes are computed (default: the rover's)")
-      ->check(notNegative());
-  groupOptions(command, "Soil and rover");
-  addPolicy(command, options.policy);
+  addOption(command, "--terrain FILE", options.classes);
+  addOption(command, "--terrain-band N", options.classes_band);
+  addOption(command, "--rocks FILE", options.rocks);
+  addOption(command, "--rocks-band N", options.rocks_band);
+  addOption(command, "--keep-out FILE", options.keep_out);
+  addOption(command, "--layer NAME=FILE", options.costs);
+  addOption(command, "--soils FILE", options.soils);
+  auto* soil = addOption(command, "--soil SOIL", options.soil);
+  addOption(command, "--model M.yaml", options.model)->excludes(soil);
+  addOption(command, "--rover ROVER", options.rover);
+  addOption(command, "--footprint METRES", options.footprint_m)->check(notNegative());
+  costmap::TravelPolicy& policy = options.policy;
+  command.add_flag("--no-marginal{false}", policy.allow_marginal);
+  command.add_flag("--allow-dangerous", policy.allow_dangerous);
+  command.add_flag("--allow-unknown", policy.allow_unknown);
+  command
+      .add_option_function<double>("--slope-uncertainty-deg",
+                                   [&policy](double deg) { policy.slope_margin_rad = deg * kDegree; })
+      ->type_name("DEG");
+  addOption(command, "--time-weight W", policy.time_weight_W);
+  addOption(command, "--entrapment FRACTION", policy.entrapment)->check(CLI::Range(0.0, 1.0));
+  command.add_flag("--unmonitored", policy.unmonitored);
+  addOption(command, "--pose-error METRES", policy.pose_error_m)->check(CLI::Range(0.0, 100.0));
+  addOption(command, "--risk-weight J", policy.risk_weight_J);
 }
 
 void addCostCurve(CLI::App& command, GroundOptions& options) {
-  addOption(command, "--cost-curve FILE.csv", options.cost_curve,
-            "cost a metre over gradient_along and gradient_across, in place of rover and soil");
-  command
-      .add_flag("--cost", options.is_cost,
-                "the map is a raster of costs a metre, or the YAML file of a Nav2 map, in place of heights, "
-                "rover and soil")
-      ->excludes("--cost-curve");
-  groupOptions(command, "Cost and thresholds");
+  addOption(command, "--cost-curve FILE.csv", options.cost_curve);
+  command.add_flag("--cost", options.is_cost)->excludes("--cost-curve");
 }
 
 Ground readGround(const GroundOptions& options, const Context& context) {
@@ -445,9 +388,9 @@ std::vector<Point> ownMetres(const std::string& path) {
   std::vector<Point> points;
   std::ifstream file(path);
   const json document = json::parse(file, nullptr, false);
+  if (!document.is_object()) return points;
   const json::json_pointer properties("/features/0/properties");
-  if (!document.contains(properties / "x_m") || !document.contains(properties / "y_m")) return points;
-  const json &x = document[properties / "x_m"], &y = document[properties / "y_m"];
+  const json x = document.value(properties / "x_m", json()), y = document.value(properties / "y_m", json());
   if (!x.is_array() || !y.is_array() || x.size() != y.size()) return points;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!x[i].is_number() || !y[i].is_number()) return {};

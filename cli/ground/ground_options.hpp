@@ -32,9 +32,6 @@ void addReadOptions(CLI::App& command, ElevationFile& file);
 /// Declares the positional argument `name` (default DEM) and the options of addReadOptions().
 void addMapOptions(CLI::App& command, ElevationFile& file, const std::string& name = "DEM");
 
-/// Declares the options --terrain, --terrain-band, --rocks, --rocks-band, --keep-out and --layer.
-void addLayerOptions(CLI::App& command, SiteFiles& files);
-
 /// Returns how a command reads a site: assumptions and repairs are printed as warnings.
 SiteReading readingOf(const Context& context);
 
@@ -54,7 +51,7 @@ struct GroundOptions : SiteFiles {
 /// also be a mission: readMission().
 void addGroundOptions(CLI::App& command, GroundOptions& options);
 
-/// Declares the options that apply to any map: those of addLayerOptions(), --soils, --soil, --model, --rover,
+/// Declares the options that apply to any map: layers, --soils, --soil, --model, --rover,
 /// --footprint, and those of the policy.
 void addGroundChoices(CLI::App& command, GroundOptions& options);
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -17,35 +16,21 @@
 
 namespace talus::cli {
 
-void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad,
-                const std::string& text) {
-  auto* radians = command
-                      .add_option_function<double>(
-                          name, [&heading_rad](double value) { heading_rad = value; }, text)
-                      ->type_name("RAD")
-                      ->check(heading());
+void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad) {
+  auto* radians = addOption(command, name + " RAD", heading_rad)->check(heading());
   command
-      .add_option_function<double>(
-          name + "-deg", [&heading_rad](double value) { heading_rad = value * kDegree; },
-          "the same in degrees")
+      .add_option_function<double>(name + "-deg", [&heading_rad](double deg) { heading_rad = deg * kDegree; })
       ->type_name("DEG")
       ->check(finite())
       ->excludes(radians);
 }
 
 void addMotionOptions(CLI::App& command, MotionOptions& drive) {
-  constexpr const char* kText = "heading of the rover there, counter-clockwise from east (default: any)";
-  addHeading(command, "--start-heading", drive.start_heading_rad, kText);
-  addHeading(command, "--goal-heading", drive.goal_heading_rad, kText);
-  command
-      .add_option_function<double>(
-          "--turning-radius", [&drive](double value) { drive.turning_radius_m = value; },
-          "minimum turning radius of hybrid; 0: turns in place (default: the rover's)")
-      ->type_name("METRES")
-      ->check(turningRadius());
+  addHeading(command, "--start-heading", drive.start_heading_rad);
+  addHeading(command, "--goal-heading", drive.goal_heading_rad);
+  addOption(command, "--turning-radius METRES", drive.turning_radius_m)->check(turningRadius());
   addChassisOption(command, drive.chassis);
-  command.add_flag("--no-reverse", drive.no_reverse, "hybrid: do not drive in reverse");
-  groupOptions(command, "Motion");
+  command.add_flag("--no-reverse", drive.no_reverse);
 }
 
 CLI::Validator turningRadius() {
@@ -53,9 +38,7 @@ CLI::Validator turningRadius() {
 }
 
 void addChassisOption(CLI::App& command, std::string& chassis) {
-  addOption(command, "--chassis KIND", chassis,
-            "check clearance, pitch and roll of this chassis along the whole motion (any planner)")
-      ->check(CLI::IsMember({"rigid", "rocker-bogie"}));
+  addOption(command, "--chassis KIND", chassis)->check(CLI::IsMember({"rigid", "rocker-bogie"}));
 }
 
 planner::Kinematics kinematicsOf(const MotionOptions& drive, const costmap::TraversabilityMap& map) {
@@ -71,80 +54,28 @@ std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap
                           kind == "rigid" ? planner::Suspension::Rigid : planner::Suspension::RockerBogie);
 }
 
-namespace {
-
-void addOutputs(CLI::App& command, PlanOptions& options) {
-  addOutput(command, "-o,--output ROUTE.geojson|ROUTE.gpkg|ROUTE.gpx|ROUTE.kml|FILE.csv", options.output,
-            "route to write; GPX and KML of Earth alone; CSV with --pairs");
-  addOutput(command, "--html PAGE.html", options.html, "page to write: map, route and profiles");
-  addOutput(command, "--png FILE.png", options.png, "picture to write");
-  addImageOption(command, options.image);
-  groupOptions(command, "Output");
-}
-
-void addPairs(CLI::App& command, PlanOptions& options) {
-  addOption(command, "--pairs FILE.csv", options.pairs,
-            "plan many routes over one map: CSV with start_x_m, start_y_m, goal_x_m, goal_y_m; one row "
-            "of results each, to -o FILE.csv or stdout; distributed over all ranks under mpirun");
-  addOption(command, "--part K/N", options.part,
-            "plan part K of N of the pairs alone; the rows of the parts make the table")
-      ->needs("--pairs");
-}
-
-}  // namespace
-
-void addPluginOption(CLI::App& command, std::string& plugin) {
-  addOption(command, "--plugin FILE.so", plugin,
-            "plan by a planner plugin instead; its route is checked, and the cost is the program's own");
-}
-
-void addImageOption(CLI::App& command, std::string& image) {
-  addOption(command, "--image ORTHO.tif", image,
-            "picture of the ground, such as an orthophoto, to show under the route")
-      ->check(CLI::ExistingFile);
-}
-
-void addPluginTime(CLI::App& command, double& time_limit_s) {
-  addOption(command, "--time S", time_limit_s,
-            "time limit of the plugin for each plan, which it is ended a second after (default: none)")
-      ->check(positive())
-      ->needs(command.get_option("--plugin"));
-}
-
 void bindPlan(CLI::App& command, PlanOptions& options) {
   addGroundOptions(command, options.ground);
   addCostCurve(command, options.ground);
-  addOption(command, "--start PLACE", options.start,
-            "start: x,y in map metres; lat,lon with the suffix d on each; or a vector file");
-  addOption(command, "--goal PLACE", options.goals,
-            "goal, in the same formats; may be repeated: the goal of least cost is chosen");
-  addOption(command, "--via PLACE", options.via, "via point; may be repeated");
-  addPairs(command, options);
-  addOption(command, "--tolerance METRES", options.tolerance_m,
-            "goal tolerance: largest distance between the end of the route and the goal")
-      ->check(notNegative());
-  groupOptions(command, "Places");
-  addOption(command, "--planner NAME", options.planner, "planner; `talus plugins` lists them");
-  addPluginOption(command, options.plugin);
-  addOption(command, "--time S", options.time_limit_s, "time limit of planning")->check(positive());
-  addOption(command, "--in-memory CELLS", options.in_memory,
-            "largest DEM that is read whole; a larger one is read in windows along a route over its overview")
-      ->check(notNegative());
-  command.add_flag("--no-proof", options.no_proof,
-                   "do not search a lower bound, nor its region for a cheaper route: quicker, for loops");
-  addOption(command, "--gap SHARE", options.gap,
-            "end at this proven gap: share of the cost above its lower bound")
-      ->check(within(1e-4, 0.99))
-      ->excludes("--no-proof");
-  addOption(command, "--corridor PERCENT", options.corridor_percent,
-            "write to -o AREA.gpkg the area that every route within this excess over the cost stays in")
-      ->check(within(0.01, 1000.0));
-  addOption(command, "--risk ALPHA", options.max_risk,
-            "upper limit of the immobilisation probability of the route")
-      ->check(within(1e-12, 1.0 - 1e-12));
-  groupOptions(command, "Planner");
+  addOption(command, "--start PLACE", options.start);
+  addOption(command, "--goal PLACE", options.goals);
+  addOption(command, "--via PLACE", options.via);
+  addOption(command, "--pairs FILE.csv", options.pairs);
+  addOption(command, "--part K/N", options.part)->needs("--pairs");
+  addOption(command, "--tolerance METRES", options.tolerance_m)->check(notNegative());
+  addOption(command, "--planner NAME", options.planner);
+  addOption(command, "--plugin FILE.so", options.plugin);
+  addOption(command, "--time S", options.time_limit_s)->check(positive());
+  addOption(command, "--in-memory CELLS", options.in_memory)->check(notNegative());
+  command.add_flag("--no-proof", options.no_proof);
+  addOption(command, "--gap SHARE", options.gap)->check(within(1e-4, 0.99))->excludes("--no-proof");
+  addOption(command, "--corridor PERCENT", options.corridor_percent)->check(within(0.01, 1000.0));
+  addOption(command, "--risk ALPHA", options.max_risk)->check(within(1e-12, 1.0 - 1e-12));
   addMotionOptions(command, options.drive);
-  addOutputs(command, options);
+  addOutput(command, "-o,--output ROUTE.geojson|ROUTE.gpkg|ROUTE.gpx|ROUTE.kml|FILE.csv", options.output);
+  addOutput(command, "--html PAGE.html", options.html);
+  addOutput(command, "--png FILE.png", options.png);
+  addOption(command, "--image ORTHO.tif", options.image)->check(CLI::ExistingFile);
 }
 
 void requirePlaces(const PlanOptions& options) {
@@ -189,11 +120,6 @@ std::string fileOrName(const std::string& word, const std::filesystem::path& fol
   return names_file ? beside(word, folder) : word;
 }
 
-// A text of the mission; empty without the key.
-std::string given(const YamlFields& fields, const std::string& name) {
-  return fields.word(name, "");
-}
-
 // A number checked with the validator of the corresponding option.
 double ranged(const YamlFields& fields, const std::string& name, const CLI::Validator& range) {
   const double value = fields.number(name);
@@ -226,10 +152,10 @@ std::string place(const YamlFields& fields, const std::string& name, const std::
 
 void readMaps(const YamlFields& maps, GroundOptions& ground, const std::filesystem::path& folder) {
   maps.only(namesOf(keysOf("Mission: maps")));
-  ground.elevation.path = beside(given(maps, "dem"), folder);
-  ground.map_file = beside(given(maps, "map"), folder);
-  ground.classes = beside(given(maps, "terrain"), folder);
-  ground.rocks = beside(given(maps, "rocks"), folder);
+  ground.elevation.path = beside(maps.word("dem", ""), folder);
+  ground.map_file = beside(maps.word("map", ""), folder);
+  ground.classes = beside(maps.word("terrain", ""), folder);
+  ground.rocks = beside(maps.word("rocks", ""), folder);
   if (maps.has("resolution_m")) ground.elevation.read.resolution_m = maps.number("resolution_m");
   ground.elevation.read.ignore_crs = maps.flag("ignore_crs", false);
 }
@@ -291,11 +217,11 @@ void readSite(const YamlFields& fields, GroundOptions& ground) {
   const std::filesystem::path folder = folderOf(ground);
   const YamlFields maps = fields.fields("maps");
   readMaps(maps, ground, folder);
-  ground.rover = fileOrName(given(fields, "rover"), folder);
-  ground.soil = fileOrName(given(fields, "soil"), folder);
-  const std::string model = beside(given(fields, "model"), folder);
+  ground.rover = fileOrName(fields.word("rover", ""), folder);
+  ground.soil = fileOrName(fields.word("soil", ""), folder);
+  const std::string model = beside(fields.word("model", ""), folder);
   ground.model = isStated(ground.call, "--soil") ? "" : model;  // a model would take the place of the soil
-  ground.soils = beside(given(fields, "soils"), folder);
+  ground.soils = beside(fields.word("soils", ""), folder);
   if (fields.has("thresholds")) readThresholds(fields.fields("thresholds"), ground.policy);
   applyCall(ground.call);
   if (maps.has("keep_out")) ground.keep_out.push_back(beside(maps.word("keep_out"), folder));
@@ -324,7 +250,7 @@ void readMission(PlanOptions& options) {
   options.drive.no_reverse = !fields.flag("reverse", true);
   if (fields.has("tolerance_m")) options.tolerance_m = ranged(fields, "tolerance_m", notNegative());
   if (fields.has("time_s")) options.time_limit_s = ranged(fields, "time_s", positive());
-  options.output = beside(given(fields, "output"), folder);
+  options.output = beside(fields.word("output", ""), folder);
   readSite(fields, options.ground);
 }
 

@@ -2,7 +2,6 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -65,8 +64,7 @@ struct PlanOptions {
 void addMotionOptions(CLI::App& command, MotionOptions& drive);
 
 /// Declares a heading option `name` in radians and NAME-deg in degrees.
-void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad,
-                const std::string& text);
+void addHeading(CLI::App& command, const std::string& name, std::optional<double>& heading_rad);
 
 /// Declares the option --chassis.
 void addChassisOption(CLI::App& command, std::string& chassis);
@@ -80,15 +78,6 @@ planner::Kinematics kinematicsOf(const MotionOptions& drive, const costmap::Trav
 /// Returns a chassis of the kind "rigid" or "rocker-bogie"; nullopt if `kind` is empty. The chassis refers to
 /// the map, which must outlive the chassis.
 std::optional<planner::Chassis> chassisOf(const std::string& kind, const costmap::TraversabilityMap& map);
-
-/// Declares the option --plugin.
-void addPluginOption(CLI::App& command, std::string& plugin);
-
-/// Declares the option --time, the time limit of a plugin, for calls without another time limit.
-void addPluginTime(CLI::App& command, double& time_limit_s);
-
-/// Declares the option --image.
-void addImageOption(CLI::App& command, std::string& image);
 
 /// Declares the options of `talus plan`.
 void bindPlan(CLI::App& command, PlanOptions& options);

@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -26,35 +25,25 @@ namespace {
 
 using nlohmann::ordered_json;
 
-bool decidesNothing(std::string_view word) {
-  constexpr std::array<std::string_view, 3> kFlags{"--json", "--quiet", "--force"};
-  return std::find(kFlags.begin(), kFlags.end(), word) != kFlags.end();
-}
-
-bool namesOutput(std::string_view word) {
-  constexpr std::array<std::string_view, 7> kOptions{"-o",        "--output",    "--html", "--png",
-                                                     "--threads", "--telemetry", "--part"};
-  return std::find(kOptions.begin(), kOptions.end(), word) != kOptions.end();
-}
-
 std::string textOf(const ordered_json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_array()) return value.is_null() ? "" : value.dump();
-  std::string text;
-  for (const ordered_json& one : value) text += (text.empty() ? "" : ", ") + textOf(one);
-  return text;
+  return listText(value, textOf);
 }
 
 }  // namespace
 
 std::string callText(const char* const* argv) {
+  static const std::set<std::string_view> flags{"--json", "--quiet", "--force"};
+  static const std::set<std::string_view> with_values{"-o",        "--output",    "--html", "--png",
+                                                      "--threads", "--telemetry", "--part"};
   if (argv == nullptr || *argv == nullptr) return "";
   std::string text = "talus";
   for (const char* const* word = argv + 1; *word != nullptr; ++word) {
     const std::string_view whole = *word;
     const std::string_view name = whole.substr(0, whole.find('='));
-    if (decidesNothing(whole)) continue;
-    if (namesOutput(name)) {
+    if (flags.contains(whole)) continue;
+    if (with_values.contains(name)) {
       if (name == whole && word[1] != nullptr) ++word;
       continue;
     }
@@ -141,7 +130,7 @@ class Fields {
   }
 
   [[noreturn]] void refuse(const char* field, const std::string& what) const {
-    throw InputError({.where = path_, .reason = fmt::format("'{}' {}", field, what), .remedy = kRemedy});
+    throw InputError({path_, fmt::format("'{}' {}", field, what), kRemedy});
   }
 
  private:
@@ -169,7 +158,7 @@ json fromGeoPackage(const std::string& path) {
   json document = json::parse(stored.document, nullptr, false);
   const auto place = json::json_pointer("/features/0/geometry/coordinates");
   if (document.is_discarded() || !document.contains(place))
-    throw InputError({.where = path, .reason = "contains no route", .remedy = kRemedy});
+    throw InputError({path, "contains no route", kRemedy});
   json& line = document[place] = json::array();
   for (const maps::Point& point : stored.line) line.push_back({point.x_m, point.y_m});
   document["crs"] = "local";
@@ -181,8 +170,7 @@ json parsed(const std::string& path) {
   maps::requireReadableFile(path);
   std::ifstream stream(path, std::ios::binary);
   json document = json::parse(stream, nullptr, false);
-  if (document.is_discarded())
-    throw InputError({.where = path, .reason = "is not valid JSON", .remedy = kRemedy});
+  if (document.is_discarded()) throw InputError({path, "is not valid JSON", kRemedy});
   return document;
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
+#include <boost/algorithm/string/trim.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -61,16 +62,10 @@ void requireOnce(const std::vector<MappedColumn>& columns, const std::string& wh
 }  // namespace
 
 void addTableOptions(CLI::App& command, TableOptions& options) {
-  addOption(command, "--column KNOWN=NAME[:UNIT]", options.columns,
-            "read a column of the file under another name, in another unit (load_N=Fz, "
-            "slip=slip_pct:percent); may be repeated");
-  addOption(command, "--columns FILE", options.columns_file,
-            "file with a line each as --column takes it, # for remarks");
-  addOption(command, "--radius M", options.radius_m, "wheel radius of every row, in metres")
-      ->check(within(1e-3, 10.0));
-  addOption(command, "--width M", options.width_m, "wheel width of every row, in metres")
-      ->check(within(1e-3, 10.0));
-  groupOptions(command, "Columns of the table");
+  addOption(command, "--column KNOWN=NAME[:UNIT]", options.columns);
+  addOption(command, "--columns FILE", options.columns_file);
+  addOption(command, "--radius M", options.radius_m)->check(within(1e-3, 10.0));
+  addOption(command, "--width M", options.width_m)->check(within(1e-3, 10.0));
 }
 
 terramech::TableFile tableFile(const std::string& path, const TableOptions& options, const Context& context,
@@ -87,8 +82,7 @@ terramech::TableFile tableFile(const std::string& path, const TableOptions& opti
     for (std::string line; std::getline(file, line);) {
       ++number;
       line.resize(std::min(line.size(), line.find('#')));
-      line.erase(line.find_last_not_of(" \t\r") + 1);
-      line.erase(0, std::min(line.size(), line.find_first_not_of(" \t")));
+      boost::trim(line);
       if (!line.empty())
         table.columns.push_back(parsed(line, fmt::format("{}:{}", options.columns_file, number), known));
     }
@@ -150,19 +144,19 @@ constexpr InputColumn kInputs[] = {{"cohesion_Pa", &WheelCase::cohesion_Pa},
                                    {"side_bulldozing", &WheelCase::side_bulldozing, true},
                                    {"slip_sinkage_exponent", &WheelCase::slip_sinkage_exponent, true}};
 
-constexpr const char* kResults[] = {"sinkage_m", "entry_angle_rad", "torque_Nm", "drawbar_pull_N",
-                                    "side_force_N"};
-
-constexpr double WheelForces::*kResultFields[] = {&WheelForces::sinkage_m, &WheelForces::entry_angle_rad,
-                                                  &WheelForces::torque_Nm, &WheelForces::drawbar_pull_N,
-                                                  &WheelForces::side_force_N};
+constexpr std::pair<const char*, double WheelForces::*> kResults[] = {
+    {"sinkage_m", &WheelForces::sinkage_m},
+    {"entry_angle_rad", &WheelForces::entry_angle_rad},
+    {"torque_Nm", &WheelForces::torque_Nm},
+    {"drawbar_pull_N", &WheelForces::drawbar_pull_N},
+    {"side_force_N", &WheelForces::side_force_N}};
 
 // Weight of a thousand tonnes: larger loads indicate wrong units, and the equilibrium search takes long to
 // fail.
 constexpr double kHeaviest_N = 1e7;
 
 bool isResult(const std::string& name) {
-  return std::find(std::begin(kResults), std::end(kResults), name) != std::end(kResults);
+  return std::ranges::any_of(kResults, [&](const auto& result) { return name == result.first; });
 }
 
 /// Returns the column index of each input; empty for a missing optional input.
@@ -171,7 +165,7 @@ std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const
   std::vector<std::optional<std::size_t>> at;
   std::string missing;
   for (const InputColumn& input : kInputs) {
-    const auto found = std::find(reader.header().begin(), reader.header().end(), input.name);
+    const auto found = std::ranges::find(reader.header(), input.name);
     at.emplace_back();
     if (found != reader.header().end())
       at.back() = static_cast<std::size_t>(found - reader.header().begin());
@@ -179,9 +173,7 @@ std::vector<std::optional<std::size_t>> positions(const CsvReader& reader, const
       missing += (missing.empty() ? "" : ", ") + std::string(input.name);
   }
   if (missing.empty()) return at;
-  throw InputError({.where = path + ":1",
-                    .reason = "no column " + missing,
-                    .remedy = "add it to the header row, in SI units"});
+  throw InputError({path + ":1", "no column " + missing, "add it to the header row, in SI units"});
 }
 
 /// A row and its case; `fault` is the reason if the row contains no valid case.
@@ -217,26 +209,22 @@ std::string reasonOf(const WheelCase& wheel_case) {
   return "has no equilibrium";
 }
 
-/// Returns true if the table has a slip angle column; side forces are written only then.
-bool hasSlipAngle(const std::vector<std::string>& header) {
-  return std::find(header.begin(), header.end(), "slip_angle_rad") != header.end();
-}
-
 class Writer {
  public:
+  /// Side forces, the last of the results, are written only if the table has a slip angle column.
   Writer(const std::filesystem::path& path, const std::vector<std::string>& header)
-      : file_(path), header_(header), results_(std::size(kResults) - (hasSlipAngle(header) ? 0 : 1)) {
+      : file_(path),
+        header_(header),
+        results_(kResults, std::size(kResults) - (std::ranges::count(header, "slip_angle_rad") > 0 ? 0 : 1)) {
     writeKept(header);
-    for (std::size_t k = 0; k < results_; ++k) out_ << ',' << kResults[k];
+    for (const auto& [name, field] : results_) out_ << ',' << name;
     out_ << '\n';
   }
 
   void write(const Entry& entry, const WheelForces* forces) {
     writeKept(entry.row.fields);
-    for (std::size_t k = 0; k < results_; ++k) {
-      out_ << ',';
-      if (forces) out_ << fmt::format("{}", forces->*kResultFields[k]);
-    }
+    for (const auto& [name, field] : results_)
+      out_ << ',' << (forces ? fmt::format("{}", forces->*field) : "");
     out_ << '\n';
   }
 
@@ -255,14 +243,13 @@ class Writer {
 
   OutputFile file_;
   std::vector<std::string> header_;
-  std::size_t results_;
+  std::span<const std::pair<const char*, double WheelForces::*>> results_;
   std::ostream& out_ = file_.stream();
 };
 
 std::vector<WheelForces> solved(const std::vector<Entry>& entries, int threads) {
-  std::vector<WheelCase> cases;
-  cases.reserve(entries.size());
-  for (const Entry& entry : entries) cases.push_back(entry.wheel_case);
+  std::vector<WheelCase> cases(entries.size());
+  std::ranges::transform(entries, cases.begin(), &Entry::wheel_case);
   std::vector<WheelForces> forces(cases.size());
   // Blocks of a multiple of four cases: the SIMD lane of a case, and thus its result, is independent of the
   // number of threads.
@@ -290,11 +277,10 @@ void writeBlock(const std::vector<Entry>& entries, const std::vector<WheelForces
 
 void checkSolved(const WheelCaseTable& table, const std::string& path) {
   if (table.solved > 0) return;
-  if (table.refused.empty())
-    throw InputError({.where = path, .reason = "no rows after the header", .remedy = "add rows"});
-  throw InputError({.where = path + ":" + std::to_string(table.refused.front().line),
-                    .reason = "no row can be solved; first reason: " + table.refused.front().reason,
-                    .remedy = "correct the rows"});
+  if (table.refused.empty()) throw InputError({path, "no rows after the header", "add rows"});
+  throw InputError({path + ":" + std::to_string(table.refused.front().line),
+                    "no row can be solved; first reason: " + table.refused.front().reason,
+                    "correct the rows"});
 }
 
 }  // namespace

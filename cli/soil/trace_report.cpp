@@ -54,35 +54,21 @@ EffectRole roleOf(const RefinedModel& refined, std::size_t effect, const Trial& 
   return {};
 }
 
-/// Empty if no sensor is inconsistent with its declared error.
-std::string strainedText(const Answer& a) {
-  std::string text;
-  for (const StrainedSensor& s : a.strained)
-    text += fmt::format("{}{} would have to err {:.1f} times as declared ({:.3g} in place of {:.3g})",
-                        text.empty() ? "" : "; ", s.column, s.fitted / s.declared, s.fitted, s.declared);
-  return text;
+std::string strainedText(const StrainedSensor& s) {
+  return fmt::format("{} would have to err {:.1f} times as declared ({:.3g} in place of {:.3g})", s.column,
+                     s.fitted / s.declared, s.fitted, s.declared);
 }
 
-/// Returns the name, column and channel of each effect.
-std::string causes(const TraceResult& result) {
-  std::string text;
-  for (const TracedEffect& e : result.effects)
-    text += fmt::format("{}{} ({}) in {}", text.empty() ? "" : ", ", e.chosen.candidate.parts.front().name,
-                        e.chosen.candidate.covariate(), name(e.channel));
-  return text;
+/// Returns the name and the column of a cause.
+std::string causeText(const Explanation& e) {
+  return fmt::format("{} ({})", e.candidate.parts.front().name, e.candidate.covariate());
 }
 
-/// Returns the text on effects with several equivalent causes; empty if each effect has one cause.
-std::string equalCauses(const TraceResult& result) {
-  std::string text;
-  for (const TracedEffect& e : result.effects) {
-    if (e.equal.empty()) continue;
-    text += fmt::format("; {} causes are equal: {} ({})", e.equal.size() + 1,
-                        e.chosen.candidate.parts.front().name, e.chosen.candidate.covariate());
-    for (const Explanation& other : e.equal)
-      text += fmt::format(", {} ({})", other.candidate.parts.front().name, other.candidate.covariate());
-  }
-  return text;
+/// Returns the causes of an effect if there are several that are equal.
+std::string equalCauses(const TracedEffect& e) {
+  return e.equal.empty() ? ""
+                         : fmt::format("; {} causes are equal: {}, {}", e.equal.size() + 1,
+                                       causeText(e.chosen), listText(e.equal, causeText));
 }
 
 }  // namespace
@@ -126,13 +112,17 @@ std::string verdictText(const TraceResult& result, const Answer& a) {
           ? ""
           : fmt::format(
                 "explained by {} effect{}, {}: {} on held-out rows from {:.2f} to {:.2f} noise floors{}",
-                result.effects.size(), result.effects.size() == 1 ? "" : "s", causes(result), name(a.channel),
-                a.base / a.floor, a.rest / a.floor, equalCauses(result));
+                result.effects.size(), result.effects.size() == 1 ? "" : "s",
+                listText(
+                    result.effects,
+                    [](const TracedEffect& e) { return causeText(e.chosen) + " in " + name(e.channel); }),
+                name(a.channel), a.base / a.floor, a.rest / a.floor,
+                listText(result.effects, equalCauses, ""));
   if (a.verdict == Verdict::Explained) return found;
   if (!a.inapplicable.empty())
     return "unexplained: the model does not apply: " + a.inapplicable + "; " + rest;
   const std::string start = found.empty() ? "unexplained: " + rest : "partly " + found;
-  if (!a.strained.empty()) return start + "; " + strainedText(a);
+  if (!a.strained.empty()) return start + "; " + listText(a.strained, strainedText, "; ");
   if (!a.at_bound.empty())
     return fmt::format("{}; at a bound of its range: {}", start, fmt::join(a.at_bound, ", "));
   if (a.strength_scatter + a.stiffness_scatter > 0.0)
@@ -398,13 +388,9 @@ ordered_json parametersJson(const Candidate& candidate) {
 }
 
 ordered_json stdJson(const TracedEffect& effect) {
+  if (effect.chosen.candidate.parts.front().empirical()) return effect.parameter_std;
   ordered_json out = ordered_json::object();
-  const Effect& part = effect.chosen.candidate.parts.front();
-  if (part.empirical()) return effect.parameter_std;
-  const EffectForm* form = findEffect(part.name);
-  std::size_t at = 0;
-  for (const EffectParameter& p : form->parameters)
-    if (p.fitted && at < effect.parameter_std.size()) out[p.name] = effect.parameter_std[at++];
+  for (const FittedNumber& p : fittedNumbers(effect)) out[p.name] = p.std;
   return out;
 }
 
@@ -460,27 +446,16 @@ ordered_json rejectedJson(const TraceResult& result) {
   });
 }
 
+/// Correlation over the rows in which both columns are known; 0 for a constant column.
 double correlation(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
-  double n = 0.0, mx = 0.0, my = 0.0;
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    if (std::isfinite(x[i]) && std::isfinite(y[i])) n += 1.0, mx += x[i], my += y[i];
-  double xx = 0.0, yy = 0.0, xy = 0.0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
-    const double a = x[i] - mx / n, b = y[i] - my / n;
-    xx += a * a;
-    yy += b * b;
-    xy += a * b;
-  }
-  return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
-}
-
-std::string equalText(const TracedEffect& effect) {
-  std::string causes;
-  for (const Explanation& e : effect.equal)
-    causes += fmt::format("{}{} ({})", causes.empty() ? "" : " or ", e.candidate.parts.front().name,
-                          e.candidate.covariate());
-  return "these rows cannot separate it from " + causes;
+  const Eigen::Array<bool, Eigen::Dynamic, 1> known = (x + y).array().isFinite();
+  const auto centred = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+    const double mean = known.select(v.array(), 0.0).sum() / static_cast<double>(known.count());
+    return known.select(v.array() - mean, 0.0);
+  };
+  const Eigen::VectorXd a = centred(x), b = centred(y);
+  const double norms = a.norm() * b.norm();
+  return norms > 0.0 ? a.dot(b) / norms : 0.0;
 }
 
 std::string effectLine(const Trial& trial, const TracedEffect& effect, const EffectRole& role) {
@@ -495,16 +470,13 @@ std::string effectLine(const Trial& trial, const TracedEffect& effect, const Eff
       line += fmt::format("\n    {} = {:.4g} +- {:.2g} [{}]{}", p.name, p.value, p.std, p.unit,
                           p.at_bound ? ", at its bound" : "");
   } else {
-    line +=
-        "\n"
-        "    curve fitted to the residual; it matches no known effect";
+    line += "\n    curve fitted to the residual; it matches no known effect";
   }
-  line += fmt::format(
-      "\n"
-      "    {}, log-likelihood gain {:.1f}",
-      "p " + pText(effect.p_value), 0.5 * effect.chosen.chi2_gain);
+  line += fmt::format("\n    p {}, log-likelihood gain {:.1f}", pText(effect.p_value),
+                      0.5 * effect.chosen.chi2_gain);
   if (!effect.equal.empty())
-    line += fmt::format("\n    {}: {}", equalText(effect), separatingMeasurement(trial, effect));
+    line += fmt::format("\n    these rows cannot separate it from {}: {}",
+                        listText(effect.equal, causeText, " or "), separatingMeasurement(trial, effect));
   return line;
 }
 

@@ -14,9 +14,7 @@
 
 namespace talus::cli {
 
-/// Errors and predictions by channel (measured quantity); channels without a value are omitted.
-
-/// Returns the errors as {NAME: ERROR}.
+/// Returns the errors as {NAME: ERROR}; channels (measured quantities) without a value are omitted.
 nlohmann::ordered_json errorsJson(const terramech::ChannelErrors& errors);
 
 /// Returns the errors of the base model and of the refined model as text: " NAME BASE -> REFINED" for each

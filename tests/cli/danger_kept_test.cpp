@@ -2,9 +2,7 @@
 // rovers, soils, row orders and missing columns.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <functional>
 #include <numbers>
 #include <string>
 

@@ -24,7 +24,7 @@ void readOptions(const std::string& bytes) {
   int threads = 0;
   cli::addGroundOptions(app, plan.ground);
   cli::addMotionOptions(app, plan.drive);
-  cli::addOutput(app, "-o,--output", plan.output, "");
+  cli::addOutput(app, "-o,--output", plan.output);
   app.add_option("--start", plan.start);
   app.add_option("--seed", seed)->check(cli::notNegative());
   app.add_option("--threads", threads)->check(CLI::Range(1, 1024));

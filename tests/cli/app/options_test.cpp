@@ -82,6 +82,7 @@ TEST(NumberCheck, EmptyValuesAreRejectedForEveryOption) {
   std::size_t asked = 0;
   for (const CLI::App* command : app.get_subcommands({}))
     for (const CLI::Option* option : command->get_options()) {
+      EXPECT_FALSE(option->get_description().empty()) << command->get_name() << " " << option->get_name(true);
       if (option->get_items_expected_max() == 0) continue;
       ++asked;
       const bool named = !option->get_lnames().empty();
@@ -143,7 +144,7 @@ TEST(HelpFormat, OptionHelpShowsValueChoicesDefaultAndExclusions) {
       ->capture_default_str()
       ->excludes(first);
   app.add_flag("--fast", fast, "hurry");
-  groupOptions(app, "Ground");
+  first->group("Ground");
   const std::string help = app.help();
   EXPECT_THAT(help, HasSubstr("\nGround:\n"));
   EXPECT_THAT(help, HasSubstr("--kind KIND"));

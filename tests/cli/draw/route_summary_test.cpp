@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include <talus/cli/draw/route_summary.hpp>
 
 #include "example_scene.hpp"

@@ -1,6 +1,3 @@
-#include <cmath>
-#include <fstream>
-
 #include <talus/cli/soil/table_options.hpp>
 #include <talus/common/common.hpp>
 #include <talus/terramech/contact/wheel_on_soil.hpp>
