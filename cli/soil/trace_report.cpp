@@ -490,11 +490,10 @@ std::vector<FittedNumber> fittedNumbers(const TracedEffect& effect) {
   for (std::size_t k = 0; form && k < form->parameters.size(); ++k) {
     const EffectParameter& p = form->parameters[k];
     if (!p.fitted) continue;
-    const std::size_t at = numbers.size();
     numbers.push_back({.name = p.name,
                        .unit = p.unit,
                        .value = part.parameters[k],
-                       .std = at < effect.parameter_std.size() ? effect.parameter_std[at] : 0.0,
+                       .std = effect.parameter_std.at(numbers.size()),
                        .at_bound = std::find(bounds.begin(), bounds.end(), p.name) != bounds.end()});
   }
   return numbers;
