@@ -15,12 +15,9 @@
 
 namespace talus::cli {
 
-/// Registers the subcommand `name`. `bind` declares the options of the subcommand as fields of a plain struct.
-/// `run(options, context)` receives the parsed struct, which a mission may complete, and returns the exit code of the
-/// program. main() prints exceptions.
-template <typename Options, typename Parsed>
-CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*bind)(CLI::App&, Options&),
-                     int (*run)(Parsed, Context&)) {
+template <typename Options, typename Run>
+CLI::App& registerCommand(CLI::App& app, Context& context, const char* name,
+                          void (*bind)(CLI::App&, Options&), Run run) {
   CLI::App& command = addSubcommand(app, name);
   auto options = std::make_shared<Options>();
   bind(command, *options);
@@ -32,6 +29,20 @@ CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*b
     context.exit_code = run(*options, context);
   });
   return command;
+}
+
+/// Registers the subcommand `name`. `bind` declares the options of the subcommand as fields of a plain struct.
+/// `run(options, context)` receives the parsed struct and returns the exit code of the program. main() prints exceptions.
+template <typename Options>
+CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*bind)(CLI::App&, Options&),
+                     int (*run)(const Options&, Context&)) {
+  return registerCommand(app, context, name, bind, run);
+}
+/// The same for a command that a mission completes.
+template <typename Options>
+CLI::App& addCommand(CLI::App& app, Context& context, const char* name, void (*bind)(CLI::App&, Options&),
+                     int (*run)(Options&, Context&)) {
+  return registerCommand(app, context, name, bind, run);
 }
 
 }  // namespace talus::cli
