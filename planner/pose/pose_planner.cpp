@@ -118,21 +118,21 @@ PosePlan PosePlanner::alongRoute(const PoseProblem& asked, const Problem& proble
   free.time_limit_s = asked.time_limit_s;
   free.prove = false;
   const Plan route = field_.plan(free);
-  if (route.status == RouteStatus::NoRoute) {  // proven for all headings: no drive exists either
-    PosePlan none;
-    none.status = route.status;
-    none.reason = route.reason;
-    return none;
-  }
-  if (route.status != RouteStatus::Found || route.points.size() < 2) return {};
-  return cheapestAlong(route.points, asked, stop);
+  if (route.status == RouteStatus::Found && route.points.size() > 1)
+    return cheapestAlong(route.points, asked, stop);
+  PosePlan none;
+  // What is proven for all headings holds for drives, too.
+  if (route.status == RouteStatus::NoRoute || route.status == RouteStatus::StartInvalid ||
+      route.status == RouteStatus::GoalInvalid)
+    none.status = route.status, none.reason = route.reason;
+  return none;
 }
 
 PosePlan PosePlanner::drivenTo(PoseProblem asked, const Problem& problem, maps::Point end) {
   const TimeLeft time(asked.time_limit_s);
   asked.goal = end;
   PosePlan along = alongRoute(asked, problem);
-  if (along.status == RouteStatus::NoRoute) return along;
+  if (!along.reason.empty()) return along;
   const bool known = along.status == RouteStatus::Found;
   if (known) asked.most_expanded = kBeside;
   asked.time_limit_s = time.share_s();

@@ -15,7 +15,7 @@ struct Budget {
 };
 
 const Budget kBudgets[] = {{"common", 700},    {"terramech", 18190}, {"maps", 6710},     {"costmap", 11731},
-                           {"planner", 21555}, {"cli", 12253},       {"examples", 1541}, {"tests", 55259}};
+                           {"planner", 21555}, {"cli", 12253},       {"examples", 1541}, {"tests", 55262}};
 
 // A change of this many lines or more below the budget lowers it.
 constexpr long kSlack = 300;

@@ -5,6 +5,7 @@
 #include <talus/planner/bench/slip_world.hpp>
 #include <talus/planner/check/annotation.hpp>
 #include <talus/planner/check/route_check.hpp>
+#include <talus/planner/grid/field_planner.hpp>
 #include <talus/planner/pose/pose_planner.hpp>
 
 #include "drawn_map.hpp"
@@ -278,7 +279,9 @@ TEST(PosePlanner, DriveEndsWithinTheGoalTolerance) {
       .start = {1.5, 1.5},
       .goal = {17.5, 1.5},
       .kinematics = {.turning_radius_m = 0.5}};
-  EXPECT_EQ(PosePlanner().plan(blocked).status, RouteStatus::GoalInvalid);
+  const Plan refused = PosePlanner().plan(blocked);
+  EXPECT_EQ(refused.status, RouteStatus::GoalInvalid);
+  EXPECT_EQ(refused.reason, FieldPlanner().plan(blocked).reason);
   blocked.goal_tolerance_m = 2.0;
   EXPECT_EQ(PosePlanner().plan(blocked).status, RouteStatus::Found);
 }
